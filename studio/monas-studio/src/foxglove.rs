@@ -6,7 +6,6 @@
 
 use std::collections::BTreeMap;
 use std::net::TcpStream;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
@@ -16,16 +15,14 @@ use serde_json::{Value, json};
 use tungstenite::protocol::{Role, WebSocketConfig};
 use tungstenite::{Message, WebSocket};
 
+use crate::foxglove_frame::{base64, frame};
 use crate::foxglove_views::FoxgloveViews;
-use crate::live_run::LiveState;
+use crate::live_state::LiveState;
 use crate::time::now;
 use crate::viewer::next_request;
 
 /// The names of the protocol, the one that is preferred first.
 pub(crate) const PROTOCOLS: [&str; 2] = ["foxglove.sdk.v1", "foxglove.websocket.v1"];
-
-/// The first byte of a frame with a message.
-const MESSAGE_DATA: u8 = 1;
 
 /// The longest wait for a request of the client, and for a message of the run.
 const PATIENCE: Duration = Duration::from_millis(5);
@@ -46,21 +43,15 @@ const BATCH: usize = 512;
 const REQUEST_LIMIT: usize = 64 << 10;
 const SUBSCRIPTIONS: usize = 1000;
 
-/// The run whose topics are served.
-#[derive(Clone)]
-pub(crate) struct FoxgloveSource {
-    pub(crate) state: Arc<LiveState>,
-}
-
 /// Serves a client until it leaves, is too slow, or the run or the studio ends.
-pub(crate) fn serve(stream: TcpStream, source: &FoxgloveSource, is_over: &AtomicBool) {
+pub(crate) fn serve(stream: TcpStream, state: &LiveState, is_over: &AtomicBool) {
     // A client that has left needs no report, and the end of the run closes the connection.
-    let _ = exchange(stream, source, is_over);
+    let _ = exchange(stream, state, is_over);
 }
 
 fn exchange(
     stream: TcpStream,
-    source: &FoxgloveSource,
+    state: &LiveState,
     is_over: &AtomicBool,
 ) -> Result<(), Box<dyn std::error::Error>> {
     stream.set_nodelay(true)?;
@@ -68,7 +59,7 @@ fn exchange(
     let limits =
         WebSocketConfig::default().max_message_size(Some(REQUEST_LIMIT)).max_frame_size(Some(REQUEST_LIMIT));
     let mut socket = WebSocket::from_raw_socket(stream, Role::Server, Some(limits));
-    let mut client = ControlClient::connect(&source.state.socket)?;
+    let mut client = ControlClient::connect(&state.socket)?;
     let run = client.describe()?;
     let info = json!({"op": "serverInfo", "name": format!("monas: {}", run.name), "capabilities": [],
         "supportedEncodings": ["protobuf"], "metadata": {}, "sessionId": run.process.to_string()});
@@ -78,7 +69,7 @@ fn exchange(
     let (mut due, mut views_due) = (now(), now());
     while !is_over.load(Ordering::SeqCst) {
         if now() >= due {
-            let news = channels.look(&mut client, &source.state)?;
+            let news = channels.look(&mut client, state)?;
             if !news.is_empty() {
                 let text = json!({"op": "advertise", "channels": news}).to_string();
                 socket.send(Message::text(text))?;
@@ -88,7 +79,7 @@ fn exchange(
         if let Some(request) = next_request(&mut socket, PATIENCE)? {
             match channels.handle(&request) {
                 Ok(false) => {}
-                Ok(true) => watch = channels.watch(&source.state.socket)?,
+                Ok(true) => watch = channels.watch(&state.socket)?,
                 Err(reason) => {
                     let status = json!({"op": "status", "level": 2, "message": reason});
                     socket.send(Message::text(status.to_string()))?;
@@ -96,7 +87,7 @@ fn exchange(
             }
         }
         if now() >= views_due {
-            for frame in channels.view_frames(&source.state) {
+            for frame in channels.view_frames(state) {
                 socket.send(Message::binary(frame))?;
             }
             views_due = now() + VIEWS;
@@ -216,46 +207,5 @@ impl Channels {
         let Some(channel) = self.ids.get(&(seen.from.clone(), seen.path.clone())) else { return Vec::new() };
         let subscribed = self.subscriptions.iter().filter(|(_, known)| *known == channel);
         subscribed.map(|(id, _)| frame(*id, seen.local, &seen.payload)).collect()
-    }
-}
-
-/// The frame of a message: its kind, the subscription, the time of publication in nanoseconds, the
-/// encoding.
-pub(crate) fn frame(subscription: u32, time: u64, payload: &[u8]) -> Vec<u8> {
-    let mut frame = Vec::with_capacity(13 + payload.len());
-    frame.push(MESSAGE_DATA);
-    frame.extend(subscription.to_le_bytes());
-    frame.extend(time.to_le_bytes());
-    frame.extend(payload);
-    frame
-}
-
-/// The protocol's encoding of bytes in JSON.
-pub(crate) fn base64(bytes: &[u8]) -> String {
-    const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);
-    for chunk in bytes.chunks(3) {
-        let byte = |place: usize| u32::from(chunk.get(place).copied().unwrap_or_default());
-        let bits = byte(0) << 16 | byte(1) << 8 | byte(2);
-        for place in 0..4 {
-            let digit = DIGITS[(bits >> (18 - 6 * place) & 63) as usize];
-            text.push(if place <= chunk.len() { char::from(digit) } else { '=' });
-        }
-    }
-    text
-}
-
-#[cfg(test)]
-mod tests {
-    use super::base64;
-
-    #[test]
-    fn bytes_are_encoded_with_padding() {
-        // RFC 4648, section 10
-        for (bytes, text) in
-            [("", ""), ("f", "Zg=="), ("fo", "Zm8="), ("foo", "Zm9v"), ("foobar", "Zm9vYmFy")]
-        {
-            assert_eq!(base64(bytes.as_bytes()), text);
-        }
     }
 }

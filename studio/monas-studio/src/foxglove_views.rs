@@ -7,8 +7,8 @@ use prost::Message as _;
 use serde_json::{Value, json};
 
 use crate::chart_view::ChartKey;
-use crate::foxglove::{base64, frame};
-use crate::live_run::LiveState;
+use crate::foxglove_frame::{base64, frame};
+use crate::live_state::LiveState;
 use crate::scene_update::SceneHistory;
 use crate::scene_update::messages::SceneUpdate;
 use crate::state_name::StateNames;

@@ -2,10 +2,10 @@
 //!
 //! A [`Studio`] serves a page on loopback: statecharts with their active states, agents, topics,
 //! the log, and a view from above. It watches a run through its control socket, as the commands of
-//! the terminal do, so that a run without a studio pays nothing, and a viewer cannot block a
-//! run. It changes one only if the studio was [allowed](StudioSettings::allows_control) to, by the
-//! same requests as these commands. What is drawn from above is a [`Scene`], which the program gives: this
-//! crate knows no sport.
+//! the terminal do, so that a run without a studio pays nothing, and a viewer cannot block a run. It
+//! changes one only if the studio was [allowed](StudioSettings::allows_control) to, by the same
+//! requests as these commands. What is drawn from above is a [`Scene`], which the program gives:
+//! this crate knows no sport.
 //!
 //! # Design rationale
 //!
@@ -46,6 +46,8 @@ mod error;
 #[cfg(unix)]
 mod foxglove;
 #[cfg(unix)]
+mod foxglove_frame;
+#[cfg(unix)]
 mod foxglove_views;
 mod guard_atom;
 mod http_request;
@@ -53,6 +55,8 @@ mod http_request;
 mod live_run;
 #[cfg(unix)]
 mod live_session;
+#[cfg(unix)]
+mod live_state;
 mod message_chain;
 mod message_decoder;
 mod pace;
@@ -72,6 +76,7 @@ mod source;
 mod state_name;
 mod tape_difference;
 mod tape_moment;
+mod tape_pair;
 mod tape_run;
 mod tape_session;
 mod time;

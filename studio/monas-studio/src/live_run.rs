@@ -1,9 +1,9 @@
 //! A run on this computer, seen through its control socket.
 
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
+use std::sync::Arc;
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender, TryRecvError};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
@@ -15,11 +15,11 @@ use serde_json::{Value, json};
 
 use crate::chart_view::{ChartKey, seconds};
 use crate::error::{Error, ErrorKind};
-use crate::foxglove::FoxgloveSource;
 use crate::live_session::LiveSession;
+use crate::live_state::LiveState;
 use crate::pace::Pace;
 use crate::run_ring::RunRing;
-use crate::run_view::{CHART, LOG, Link, MODEL, RunView, ViewedMessage};
+use crate::run_view::{CHART, LOG, Link, MODEL, ViewedMessage};
 use crate::scene::{Scene, SceneEvent};
 use crate::source::{Session, Source};
 use crate::time::now;
@@ -44,18 +44,6 @@ pub(crate) struct LiveRun {
     thread: Option<JoinHandle<()>>,
 }
 
-/// A run as it is known to all of its viewers.
-pub(crate) struct LiveState {
-    pub(crate) socket: PathBuf,
-    pub(crate) scene: Option<Arc<dyn Scene>>,
-    pub(crate) pace: Option<Pace>,
-    /// Whether viewers may change the run.
-    pub(crate) allows_control: bool,
-    view: Mutex<RunView>,
-    /// What the run was before. It is locked after the view.
-    ring: Mutex<RunRing>,
-}
-
 impl LiveRun {
     /// Connects to the run whose control socket is at a path; viewers may change it if
     /// `allows_control`.
@@ -65,8 +53,7 @@ impl LiveRun {
         pace: Option<Pace>,
         allows_control: bool,
     ) -> Result<LiveRun, Error> {
-        let (socket, view, ring) = (socket.to_owned(), Mutex::default(), Mutex::default());
-        let state = Arc::new(LiveState { socket, scene, pace, allows_control, view, ring });
+        let state = Arc::new(LiveState::new(socket.to_owned(), scene, pace, allows_control));
         let collector = state.clone();
         let (ends, ended) = mpsc::channel();
         let thread =
@@ -93,20 +80,12 @@ impl Source for LiveRun {
         self.state.allows_control
     }
 
-    fn foxglove(&self) -> Option<FoxgloveSource> {
-        Some(FoxgloveSource { state: self.state.clone() })
+    fn live_state(&self) -> Option<Arc<LiveState>> {
+        Some(self.state.clone())
     }
 }
 
 impl LiveState {
-    pub(crate) fn view(&self) -> MutexGuard<'_, RunView> {
-        self.view.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
-    pub(crate) fn ring(&self) -> MutexGuard<'_, RunRing> {
-        self.ring.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
     /// Follows the run, and the next one with its name, until the studio ends.
     fn collect(&self, ended: &Receiver<()>) {
         loop {

@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 
 use crate::chart_view::seconds;
 use crate::control_request::ControlRequest;
-use crate::live_run::LiveState;
+use crate::live_state::LiveState;
 use crate::pace::Pace;
 use crate::run_control;
 use crate::run_view::{RunView, ViewCursor};
@@ -62,7 +62,7 @@ struct WatchedTopic {
 impl Session for LiveSession {
     fn handle(&mut self, request: ViewerRequest) -> Option<Value> {
         match request {
-            ViewerRequest::Picture(key) => {
+            ViewerRequest::Picture { key, .. } => {
                 let view = self.state.view();
                 Some(json!({"type": "picture", "key": key, "picture": view.picture(&key)}))
             }

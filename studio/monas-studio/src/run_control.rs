@@ -7,7 +7,7 @@ use prost_reflect::{DynamicMessage, EnumDescriptor, FieldDescriptor, Kind, Messa
 use serde_json::{Value, json};
 
 use crate::control_request::ControlRequest;
-use crate::live_run::LiveState;
+use crate::live_state::LiveState;
 use crate::message_decoder::message_json;
 
 /// The longest chain of messages within messages that a form shows.

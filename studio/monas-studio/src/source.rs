@@ -1,11 +1,13 @@
 //! Where a studio has its view from.
 
+#[cfg(unix)]
+use std::sync::Arc;
 use std::time::Duration;
 
 use serde_json::Value;
 
 #[cfg(unix)]
-use crate::foxglove::FoxgloveSource;
+use crate::live_state::LiveState;
 use crate::viewer_request::ViewerRequest;
 
 /// A run or a tape that viewers can open.
@@ -18,9 +20,9 @@ pub(crate) trait Source: Send + Sync {
         false
     }
 
-    /// What is served to viewers of others, if it is a run.
+    /// The run that is served to viewers of others, if it is one.
     #[cfg(unix)]
-    fn foxglove(&self) -> Option<FoxgloveSource> {
+    fn live_state(&self) -> Option<Arc<LiveState>> {
         None
     }
 }

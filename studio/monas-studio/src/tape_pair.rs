@@ -20,7 +20,8 @@ impl TapePair {
         let until = tape.end_seconds().min(other.end_seconds());
         if let Some(difference) = tape.first_difference(&other, until) {
             let (topic, host) = (&difference.topic, &difference.host);
-            let text = format!("{topic} number {} by {} of {host}", difference.sequence, difference.publisher);
+            let text =
+                format!("{topic} number {} by {} of {host}", difference.sequence, difference.publisher);
             let time = |event: &Value| event["t"].as_f64().unwrap_or_default();
             let place = events.partition_point(|event| time(event) < difference.time);
             events.insert(place, json!({"t": difference.time, "kind": "first difference", "text": text}));

@@ -7,8 +7,8 @@ use crate::control_request::ControlRequest;
 /// A request of a page. Only [`Control`](ViewerRequest::Control) changes what a run does.
 #[derive(Clone, PartialEq, Debug)]
 pub(crate) enum ViewerRequest {
-    /// The shapes of a chart.
-    Picture(String),
+    /// The shapes of a chart; of the tape beside, if it is one of that.
+    Picture { key: String, is_beside: bool },
     /// Messages of a topic of a host from now on; none of any other.
     Watch { host: String, topic: String },
     /// No messages from now on.
@@ -39,7 +39,9 @@ impl ViewerRequest {
         let word = |key: &str| value[key].as_str().map(str::to_owned);
         let number = |key: &str| value[key].as_u64().and_then(|number| number.try_into().ok());
         match value["type"].as_str()? {
-            "picture" => Some(ViewerRequest::Picture(word("key")?)),
+            "picture" => {
+                Some(ViewerRequest::Picture { key: word("key")?, is_beside: value["beside"] == true })
+            }
             "watch" => Some(ViewerRequest::Watch { host: word("host")?, topic: word("topic")? }),
             "live" => Some(ViewerRequest::Live),
             "unwatch" => Some(ViewerRequest::Unwatch),

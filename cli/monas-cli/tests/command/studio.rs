@@ -138,6 +138,16 @@ fn another_guard_from_a_moment_on_gives_another_future_and_the_same_guard_the_sa
     assert_eq!((&difference["host"], &difference["topic"]), (&"blue-2".into(), &"soccer/motion".into()));
     assert_eq!((difference["time"].as_f64(), &difference["first"]["kind"]), (Some(7.8), &"KICK_LEFT".into()));
     assert_ne!(without["recorded"]["events"], without["what_if"]["events"]);
+    // a parameter of an activity takes effect, on the robots that are named
+    let slow = object(&["--set", "agent.Attacker.MotionController.walk_forward=0.05", "--host", "blue-3"]);
+    assert_eq!(
+        slow["changes"],
+        serde_json::json!(["blue-3: agent.Attacker.MotionController.walk_forward=0.05"])
+    );
+    let difference = &slow["difference"];
+    assert_eq!((&difference["host"], &difference["topic"]), (&"blue-3".into(), &"body/actuators".into()));
+    assert!(difference["first"]["walk_x"].as_f64() > difference["second"]["walk_x"].as_f64(), "{difference}");
+    assert!(difference["time"].as_f64().is_some_and(|time| (7.75..8.0).contains(&time)), "{difference}");
     let why = monas(&["why", other, "blue-2", "--transition", "CONDITION -> kickBall", "--at", "12"]);
     assert_eq!(why.code, Some(0), "{}", why.err);
 
@@ -148,6 +158,8 @@ fn another_guard_from_a_moment_on_gives_another_future_and_the_same_guard_the_sa
     refused(&["--guard", "CONDITION -> kickBall"], "is not `A -> B=[condition]`");
     refused(&["--guard", "CONDITION -> nowhere=[true]"], "there is no transition");
     refused(&["--set", "agent.Nobody.frequency=5"], "no robot has an agent `Nobody`");
+    refused(&["--set", "agent.Attacker.Nobody.speed=5"], "has no activity `Nobody`");
+    refused(&["--set", "agent.Attacker.Vision.speed=5"], "unknown parameter `speed`");
     refused(&["--set", "agent.Attacker.WalkTowardsBall.no_such=5"], "unknown parameter");
     refused(&[], "--set");
 }

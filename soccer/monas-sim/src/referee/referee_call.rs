@@ -19,7 +19,7 @@ pub enum RefereeCall {
     Stop,
     /// A stopped game goes on.
     Resume,
-    /// The ball is dropped as if nobody could reach it.
+    /// The ball is dropped as if no robot could reach it.
     DropBall,
     /// The robot leaves the field for the time of a penalty.
     Penalize(usize),

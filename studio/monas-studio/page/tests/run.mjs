@@ -360,6 +360,50 @@ async function tape(browser) {
   await studio.stop();
 }
 
+/** Two futures of a match on one timeline. */
+async function besides(browser) {
+  const folder = mkdtempSync(join(tmpdir(), 'monas-tapes-'));
+  const [file, other] = ['match.mcap', 'other.mcap'].map((name) => join(folder, name));
+  execFileSync(PROGRAM, ['run', MATCH, '--seed', '1', '--for', '20s', '--no-control', '--record', file], { stdio: 'ignore' });
+  const guard = ['--at', '7.75s', '--guard', 'CONDITION -> kickBall=[false]', '--host', 'blue-2'];
+  execFileSync(PROGRAM, ['tape', 'what-if', file, ...guard, '-o', other], { stdio: 'ignore' });
+  const studio = start(PROGRAM, ['studio', file, '--beside', other]);
+  const { page, faults } = await open(browser, await studio.url);
+  await until(page, 'two fields', () => document.querySelectorAll('.side svg').length === 2);
+  await page.locator('.play', { hasText: 'Hold' }).click();
+  const places = (side) => page.locator('.side').nth(side).locator('.body').evaluateAll((all) => all.map((one) => one.outerHTML.match(/translate\([^)]*\)/)?.[0]).join());
+  const seek = async (to) => {
+    await page.getByLabel('Moment').fill(String(to));
+    await until(page, `moment ${to}`, (to) => {
+      const [minutes, rest] = (document.querySelector('.time')?.textContent ?? '').split(':').map(Number);
+      return Math.abs(minutes * 60 + rest - to) < 0.06;
+    }, to);
+    await page.waitForTimeout(500);
+  };
+  await seek(7.5);
+  assert.match(await textOf(page, '.difference'), /First difference at 0:07\.8: soccer\/motion number \d+ by Attacker of blue-2/);
+  await until(page, 'robots on both', () => document.querySelectorAll('.body').length === 12);
+  assert.equal(await places(0), await places(1));
+  assert.equal(await page.locator('.differs').count(), 0);
+  await page.getByRole('button', { name: 'go there' }).click();
+  await until(page, 'the difference', () => document.querySelector('.time')?.textContent === '0:07.8');
+  await seek(8.5);
+  const row = page.locator('tr.choice', { hasText: 'blue-2' });
+  await row.getByText('≠').waitFor();
+  await row.click();
+  const list = (side) => page.locator('.list').nth(side).innerText();
+  assert.match(await list(0), /kickBall|Kick/);
+  assert.doesNotMatch((await list(1)).split('\n')[0], /Kick/);
+  await shot(page, 'beside');
+  await seek(15);
+  assert.notEqual(await places(0), await places(1));
+  await seek(7.5);
+  assert.equal(await places(0), await places(1), 'the same when reached backwards');
+  assert.deepEqual(faults, []);
+  await page.close();
+  await studio.stop();
+}
+
 /** A transition that does not fire, its values, the messages behind them, and its firings. */
 async function whyNot(page, seek, time) {
   await seek(8.3);
@@ -539,6 +583,7 @@ try {
   await page.close();
   await check('a studio beside runs follows them', () => beside(browser));
   await check('a tape is played, searched and stepped', () => tape(browser));
+  await check('two tapes are shown on one timeline', () => besides(browser));
   await check('a run is steered only with permission', () => steering(browser));
 } finally {
   await browser.close();

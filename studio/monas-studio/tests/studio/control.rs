@@ -1,4 +1,4 @@
-//! Changes of a real run by viewers, and that nobody else can make them.
+//! Changes of a real run by viewers that are allowed to, and refusals for others.
 
 use std::path::PathBuf;
 use std::time::Duration;

@@ -79,6 +79,10 @@ export class StudioClient {
   /** The same of a transition. */
   whyTransition = $state.raw<{ key: string; transition: number; why: TransitionExplanation } | null>(null);
 
+  /** The tape beside: it gets its messages from here. */
+  beside = $state.raw<StudioClient | null>(null);
+
+  #parent: StudioClient | null = null;
   #socket: WebSocket | null = null;
   #retry = FIRST_RETRY;
   #watched: { host: string; topic: string } | null = null;
@@ -198,6 +202,10 @@ export class StudioClient {
   }
 
   #send(message: object): void {
+    if (this.#parent) {
+      this.#parent.#send({ ...message, beside: true });
+      return;
+    }
     if (this.#socket?.readyState === WebSocket.OPEN) {
       this.#socket.send(JSON.stringify(message));
     }
@@ -218,6 +226,10 @@ export class StudioClient {
         this.#takeFrame(message);
         break;
       case 'picture': {
+        if (message.beside && this.beside) {
+          this.beside.#take({ ...message, beside: false });
+          break;
+        }
         const chart = this.charts.get(message.key);
         if (chart && message.picture) {
           const pictures = new Map(this.pictures);
@@ -288,6 +300,13 @@ export class StudioClient {
     if (frame.sample) {
       this.sample = frame.sample;
     }
+    if (frame.beside) {
+      if (!this.beside) {
+        this.beside = new StudioClient();
+        this.beside.#parent = this;
+      }
+      this.beside.#takeFrame(frame.beside);
+    }
   }
 
   /** Forgets what belongs to another moment; shapes stay. */
@@ -309,6 +328,7 @@ export class StudioClient {
     this.agents = [];
     this.topics = [];
     this.log = [];
+    this.beside = null;
     this.scene = null;
     this.actions = [];
     this.tape = null;

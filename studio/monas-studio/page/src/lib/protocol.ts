@@ -278,6 +278,8 @@ export interface Frame {
   /** The moment is not a later one: what came since holds no more. */
   elsewhere?: boolean;
   tape?: TapeFacts;
+  /** The same moment of the tape beside. */
+  beside?: Frame;
   pace?: { is_set_here: boolean; factor: number | null };
 }
 
@@ -315,7 +317,7 @@ export interface Reply {
 export type ServerMessage =
   | Frame
   | ({ type: 'reply'; id: number | null } & Reply)
-  | { type: 'picture'; key: string; picture: Picture | null }
+  | { type: 'picture'; key: string; beside?: boolean; picture: Picture | null }
   | { type: 'why'; key: string; node: number; why: Explanation }
   | { type: 'why transition'; key: string; transition: number; why: TransitionExplanation }
   | { type: 'refused'; host: string; topic: string; reason: string };
