@@ -2,8 +2,8 @@
 //!
 //! A [`Studio`] serves a page on loopback: statecharts with their active states, agents, topics,
 //! the log, and a view from above. It watches a run through its control socket, as the commands of
-//! the terminal do, so that a run without a studio pays nothing, and a viewer cannot block a run. It
-//! changes one only if the studio was [allowed](StudioSettings::allows_control) to, by the same
+//! the terminal do, so that a run without a studio pays nothing, and a viewer cannot block a run.
+//! It changes one only if the studio was [allowed](StudioSettings::allows_control) to, by the same
 //! requests as these commands. What is drawn from above is a [`Scene`], which the program gives:
 //! this crate knows no sport.
 //!

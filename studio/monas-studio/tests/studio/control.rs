@@ -8,7 +8,7 @@ use monas_link::control::ControlServer;
 use monas_studio::{Studio, StudioSettings};
 use serde_json::{Value, json};
 
-use crate::kit::{Viewer, chart};
+use crate::kit::{Viewer, address, chart, exchange};
 
 fn blink(_: &mut Blackboard) {}
 
@@ -180,6 +180,42 @@ fn a_studio_that_only_looks_refuses_every_change() {
         agent["cycles"].as_u64().filter(|cycles| *cycles > before)
     });
     assert!(after > before);
+}
+
+#[test]
+fn pages_of_others_and_clients_without_the_token_cannot_change_a_run() {
+    let run = Lamps::start();
+    let origins = vec!["https://viewer.example".to_owned()];
+    let open = |listen: &str| {
+        let listen = Some(listen.parse().unwrap());
+        let settings =
+            StudioSettings { listen, origins: origins.clone(), allows_control: true, ..Default::default() };
+        Studio::of_run(&run.socket(), settings).unwrap()
+    };
+    let upgrade = [
+        "Upgrade: websocket",
+        "Connection: Upgrade",
+        "Sec-WebSocket-Version: 13",
+        "Sec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==",
+    ];
+    let studio = open("127.0.0.1:0");
+    let own = format!("Host: {}", address(&studio));
+    for foreign in [
+        &[own.as_str(), "Origin: http://evil.example"][..],
+        // an origin that may read by Foxglove's protocol
+        &[own.as_str(), "Origin: https://viewer.example"],
+        &["Host: rebound.example"],
+        &[],
+    ] {
+        let reply = exchange(&studio, "GET /socket", &[foreign, &upgrade].concat());
+        assert!(reply.starts_with("HTTP/1.1 403"), "{foreign:?}: {reply}");
+    }
+    let elsewhere = open("0.0.0.0:0");
+    let own = format!("Host: {}", address(&elsewhere));
+    for (path, what) in [("/socket", "a token is needed"), ("/socket?token=0", "the token is wrong")] {
+        let reply = exchange(&elsewhere, &format!("GET {path}"), &[&[own.as_str()][..], &upgrade].concat());
+        assert!(reply.starts_with("HTTP/1.1 403") && reply.contains(what), "{reply}");
+    }
 }
 
 #[test]
