@@ -109,10 +109,12 @@ const TESTS = {
       () =>
         new Promise((resolve) => {
           const socket = new WebSocket(`ws://${location.host}/socket`);
-          socket.onopen = () => setInterval(() => socket.send(JSON.stringify({ type: 'picture', key: 'blue-2/Attacker/0' })), 500);
+          const ask = () => socket.readyState === WebSocket.OPEN && socket.send(JSON.stringify({ type: 'picture', key: 'blue-2/Attacker/0' }));
+          const again = setInterval(ask, 500);
           socket.onmessage = (event) => {
             const message = JSON.parse(event.data);
             if (message.type === 'picture' && message.picture) {
+              clearInterval(again);
               socket.close();
               resolve(message.picture);
             }
@@ -327,13 +329,24 @@ async function tape(browser) {
   assert.deepEqual(await log(), lines);
   // steps of the chosen chart, on and back
   const active = () => page.locator('.chart .node.active').evaluateAll((all) => all.map((one) => one.dataset.state).join());
+  const activeIs = (what, states, isSame) =>
+    until(
+      page,
+      what,
+      ([states, isSame]) => {
+        const now = [...document.querySelectorAll('.chart .node.active')].map((one) => one.dataset.state).join();
+        return (now === states) === isSame;
+      },
+      [states, isSame],
+    );
+  const atMoment = await active();
   await page.keyboard.press('.');
-  await page.waitForTimeout(300);
+  await activeIs('the next step', atMoment, false);
   const [atStep, stepTime] = [await active(), await time()];
   await page.keyboard.press('.');
+  await activeIs('the step after it', atStep, false);
   await page.keyboard.press(',');
-  await page.waitForTimeout(300);
-  assert.equal(await active(), atStep);
+  await activeIs('the step before', atStep, true);
   assert.equal(await time(), stepTime);
   // events
   await seek(1);
@@ -433,7 +446,7 @@ async function whyNot(page, seek, time) {
 
 /** A run that pages may change: agents, messages, the referee, events; and one that they may not. */
 async function steering(browser) {
-  const run = start(PROGRAM, ['run', MATCH, '--studio', '--allow-control', '--seed', '1', '--for', '600s']);
+  const run = start(PROGRAM, ['run', MATCH, '--studio', '--allow-control', '--pace', '0.05', '--seed', '1', '--for', '600s']);
   const { page, faults } = await open(browser, await run.url);
   await until(page, 'six charts', () => document.querySelectorAll('.robots li').length === 6);
   // the referee, by keyboard alone
@@ -444,6 +457,7 @@ async function steering(browser) {
     await page.getByRole('button', { name: button, exact: true }).click();
     await until(page, state, (state) => document.querySelector('.panel header')?.textContent?.includes(state), state);
   }
+  await page.getByRole('button', { name: '1×' }).click();
   await page.locator('.robots button', { hasText: 'blue-2' }).click();
   await page.getByRole('button', { name: 'Penalize blue-2' }).click();
   await until(page, 'a robot off the field', () => document.querySelectorAll('.body.out').length === 1);
