@@ -1,8 +1,9 @@
 // Viewers of a run at full rate for some minutes, not part of the tests:
 // `MONAS=path/to/monas node tests/soak.mjs [MINUTES] [VIEWERS]`. It prints the cycles of agents in
-// real time without and with viewers, and the memory of the program and of the pages.
+// real time without and with viewers, the memory of the program and of the pages, and the processor
+// time of the program's threads: that of the run itself must not depend on viewers.
 import { execFileSync } from 'node:child_process';
-import { readFileSync } from 'node:fs';
+import { readdirSync, readFileSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
 import { launch, start } from './browser.mjs';
 
@@ -24,7 +25,24 @@ function usage(pid) {
   return { memory: Number(/VmRSS:\s+(\d+)/.exec(status)?.[1]) * 1024, cpu };
 }
 
-/** The cycles of all agents: their number, the mean and the longest in milliseconds. */
+/** The processor time of the threads of a process in seconds, by their names without numbers. */
+function threads(pid) {
+  const times = new Map();
+  for (const task of readdirSync(`/proc/${pid}/task`)) {
+    try {
+      const stat = readFileSync(`/proc/${pid}/task/${task}/stat`, 'utf8');
+      const name = stat.slice(stat.indexOf('(') + 1, stat.lastIndexOf(')'));
+      const fields = stat.slice(stat.lastIndexOf(')') + 2).split(' ');
+      times.set(name, (times.get(name) ?? 0) + (Number(fields[11]) + Number(fields[12])) / 100);
+    } catch {
+      // It has ended.
+    }
+  }
+  return [...times].sort((a, b) => b[1] - a[1]).map(([name, seconds]) => `${name} ${seconds.toFixed(1)} s`).join(', ');
+}
+
+/** The cycles of all agents: their number, and times in milliseconds; percentiles are the largest
+ * of an agent. */
 function cycles(folder) {
   const text = execFileSync(PROGRAM, ['agent', 'list', '--run', 'soak', '--format', 'json'], { env: { ...process.env, XDG_RUNTIME_DIR: folder } });
   const rows = String(text).trim().split('\n').map((line) => JSON.parse(line));
@@ -32,12 +50,14 @@ function cycles(folder) {
   const count = times.reduce((all, time) => all + time.count, 0);
   const mean = times.reduce((all, time) => all + time.mean_seconds * time.count, 0) / Math.max(1, count);
   const longest = Math.max(...times.map((time) => time.longest_seconds));
-  const p99 = Math.max(...times.map((time) => time.p99_seconds));
-  return { count, mean: mean * 1e3, p99: p99 * 1e3, longest: longest * 1e3 };
+  const [p50, p99, p999] = ['p50', 'p99', 'p999'].map((name) => Math.max(...times.map((time) => time[`${name}_seconds`])) * 1e3);
+  return { count, mean: mean * 1e3, p50, p99, p999, longest: longest * 1e3 };
 }
 
-const line = (name, { count, mean, p99, longest }) =>
-  console.log(`${name}: ${count} cycles, mean ${mean.toFixed(4)} ms, p99 ${p99.toFixed(3)} ms, longest ${longest.toFixed(2)} ms`);
+const line = (name, { count, mean, p50, p99, p999, longest }) =>
+  console.log(
+    `${name}: ${count} cycles, mean ${mean.toFixed(4)} ms, p50 ${p50.toFixed(4)} ms, p99 ${p99.toFixed(3)} ms, p99.9 ${p999.toFixed(3)} ms, longest ${longest.toFixed(2)} ms`,
+  );
 
 /** A run for the time, with so many viewers. */
 async function soak(count) {
@@ -74,6 +94,7 @@ async function soak(count) {
     );
   }
   line(`${count} viewers`, cycles(run.folder));
+  console.log(`${count} viewers, threads: ${threads(pid)}`);
   await browser?.close();
   await run.stop();
 }
