@@ -2,7 +2,7 @@
 // written to tests/screenshots.
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
-import { mkdirSync, mkdtempSync, readFileSync } from 'node:fs';
+import { mkdirSync, mkdtempSync, readFileSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
@@ -373,6 +373,29 @@ async function tape(browser) {
   await studio.stop();
 }
 
+/** An event is raised by its name in the chart of an agent in real time. */
+async function events(browser) {
+  const folder = mkdtempSync(join(tmpdir(), 'monas-lamp-'));
+  const role = 'Role: Lamp\nLiveness:\n  lamp = (Stand . LedHandler)~\nTransitions:\n  Stand -> LedHandler : whistle\n';
+  writeFileSync(join(folder, 'lamp.srm'), role);
+  writeFileSync(join(folder, 'lamp.xml'), '<agent><name>Lamp</name><statechart>lamp.srm</statechart></agent>\n');
+  const run = start(PROGRAM, ['run', join(folder, 'lamp.xml'), '--studio', '--allow-control', '--for', '300s']);
+  const { page, faults } = await open(browser, await run.url);
+  const form = page.getByRole('form', { name: 'Raise an event' });
+  await form.waitFor();
+  assert.deepEqual(await form.locator('option').evaluateAll((all) => all.map((one) => one.value)), ['whistle']);
+  await form.getByLabel('Event').fill('whistle');
+  await page.keyboard.press('Enter');
+  await form.locator('.outcome', { hasText: 'event whistle: done' }).waitFor();
+  await form.getByLabel('Event').fill('shout');
+  await page.keyboard.press('Enter');
+  await form.locator('.outcome', { hasText: /refused.*names the event `shout`/ }).waitFor();
+  await shot(page, 'event');
+  assert.deepEqual(faults, []);
+  await page.close();
+  await run.stop();
+}
+
 /** Two futures of a match on one timeline. */
 async function besides(browser) {
   const folder = mkdtempSync(join(tmpdir(), 'monas-tapes-'));
@@ -497,6 +520,16 @@ async function steering(browser) {
   await model('broken.srm', 'Liveness:\n  x = (');
   await control.getByRole('button', { name: 'Replace', exact: true }).click();
   await outcome(/broken\.srm:\d+:\d+/);
+  const attacker = readFileSync(new URL('../../../../models/attacker.srm', import.meta.url), 'utf8');
+  await model('attacker.srm', attacker);
+  await control.getByRole('button', { name: 'Replace', exact: true }).click();
+  await outcome(/swap to attacker\.srm: done/);
+  // a parameter of an activity, whose name is completed
+  assert.equal(await control.locator('option[value="MotionController."]').count(), 1);
+  await control.getByLabel('What is set').fill('MotionController.walk_forward');
+  await control.getByLabel('Value', { exact: true }).fill('0.2');
+  await control.getByRole('button', { name: 'Set', exact: true }).click();
+  await outcome(/walk_forward=0\.2: done/);
   // a message by form
   await page.locator('h2').first().click();
   await page.keyboard.press('3');
@@ -598,6 +631,7 @@ try {
   await check('a studio beside runs follows them', () => beside(browser));
   await check('a tape is played, searched and stepped', () => tape(browser));
   await check('two tapes are shown on one timeline', () => besides(browser));
+  await check('an event is raised by its name', () => events(browser));
   await check('a run is steered only with permission', () => steering(browser));
 } finally {
   await browser.close();
