@@ -1,5 +1,8 @@
 //! The shapes of a compact drawing as JSON, for viewers that show a running chart.
 
+use std::collections::BTreeSet;
+
+use yase::expression::{Path, Trigger};
 use yase::statechart::{NodeId, NodeKind, Point, StateNames, Statechart};
 
 use crate::compact::CompactChart;
@@ -20,6 +23,7 @@ use crate::svg::layout;
 ///   `lines` of its label and the middle `at` of the label.
 /// - `active`: the numbers of the given active nodes.
 /// - `transitions`: the full text of every transition by its number, with `source` and `target`.
+/// - `events`: the names in triggers, sorted: events, and messages whose arrivals are events.
 ///
 /// Composites that are named by a term of a formula have no title: their content says it.
 pub fn to_picture(chart: &Statechart, active: &[NodeId]) -> String {
@@ -76,6 +80,8 @@ pub fn to_picture(chart: &Statechart, active: &[NodeId]) -> String {
             ("text", transition.expression.to_string().into()),
         ])
     });
+    let triggers = chart.transitions().filter_map(|(_, transition)| transition.expression.trigger.as_ref());
+    let events: BTreeSet<String> = triggers.flat_map(event_names).collect();
     let (width, height) = layout.page_size(&compact.chart);
     let picture = object([
         ("name", chart.name.as_str().into()),
@@ -85,8 +91,17 @@ pub fn to_picture(chart: &Statechart, active: &[NodeId]) -> String {
         ("nodes", JsonValue::List(nodes.collect())),
         ("arrows", JsonValue::List(arrows.collect())),
         ("transitions", JsonValue::List(transitions.collect())),
+        ("events", JsonValue::List(events.into_iter().map(JsonValue::from).collect())),
     ]);
     picture.to_line()
+}
+
+fn event_names(trigger: &Trigger) -> Vec<String> {
+    match trigger {
+        Trigger::Any => Vec::new(),
+        Trigger::OneOf(paths) => paths.iter().map(Path::text).collect(),
+        Trigger::Not(path) => vec![path.text()],
+    }
 }
 
 /// Whether a name is a word of the role, not a term.

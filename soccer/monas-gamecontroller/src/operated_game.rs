@@ -53,7 +53,7 @@ impl OperatedGame {
     /// Counts the seconds until a moment.
     pub fn advance(&mut self, now: Timestamp) {
         while now.since(self.counted) >= Duration::from_secs(1) {
-            self.counted = self.counted + Duration::from_secs(1);
+            self.counted += Duration::from_secs(1);
             self.count_second();
         }
     }

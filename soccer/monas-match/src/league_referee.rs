@@ -77,6 +77,13 @@ impl LeagueEnd for LeagueReferee {
 /// The state of a match as control data; players that are not in the line-up are substitutes.
 fn control_data(world: &SimulatedWorld, competition: Competition, messages: [u32; 2]) -> GameControlData {
     let referee = world.referee();
+    // Only this rule book can announce that the game is stopped.
+    let competition = match competition {
+        Competition::HumanoidSoccer { size, .. } => {
+            Competition::HumanoidSoccer { size, is_stopped: referee.is_stopped() }
+        }
+        other => other,
+    };
     let left = usize::from(referee.defends()[1] == FieldSide::Left);
     let order = [left, 1 - left];
     let numbers = order.map(|team| world.teams()[team].number);
@@ -133,5 +140,24 @@ fn state(state: GameState) -> LeagueState {
         GameState::Set => LeagueState::Set,
         GameState::Playing => LeagueState::Playing,
         GameState::Finished => LeagueState::Finished,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use monas_sim::{RefereeCall, Setup};
+
+    use super::*;
+
+    #[test]
+    fn a_game_that_a_person_stops_is_announced_where_the_rules_can_say_so() {
+        let mut world = SimulatedWorld::new(Setup::three_against_three(1)).unwrap();
+        let halted = |world: &SimulatedWorld, rules| {
+            control_data(world, Competition::of(rules), [0, 0]).competition.is_stopped()
+        };
+        assert!(!halted(&world, RuleBook::HumanoidSoccer));
+        world.call(RefereeCall::Stop).unwrap();
+        assert!(halted(&world, RuleBook::HumanoidSoccer));
+        assert!(!halted(&world, RuleBook::StandardPlatform));
     }
 }

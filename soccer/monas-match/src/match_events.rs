@@ -49,7 +49,7 @@ fn offence_name(offence: Offence) -> &'static str {
         Offence::Pushing => "pushing",
         Offence::BallHolding => "ball holding",
         Offence::IllegalDefender => "illegal defender",
-        Offence::Announced => "announced by the GameController",
+        Offence::Announced => "decided by a person",
     }
 }
 

@@ -3,9 +3,10 @@
 use std::time::Duration;
 
 use monas::{BoxError, World};
-use monas_sim::messages::topics::{INCIDENT, SCORE, TRUTH};
-use monas_sim::messages::{Incident, RefereeState, Score, TeamScore, TrueRobot, Truth};
-use monas_sim::{GameState, STEP, SharedField};
+use monas_sim::messages::referee_call::Kind;
+use monas_sim::messages::topics::{INCIDENT, REFEREE, SCORE, TRUTH};
+use monas_sim::messages::{Incident, RefereeCall, RefereeState, Score, TeamScore, TrueRobot, Truth};
+use monas_sim::{GameState, STEP, SharedField, SimulatedWorld};
 use narukom::{Blackboard, Timestamp};
 
 use crate::league::League;
@@ -25,6 +26,20 @@ pub(crate) struct MatchWorld {
 impl MatchWorld {
     pub(crate) fn new(pitch: SharedField, league: Option<League>) -> MatchWorld {
         MatchWorld { pitch, seen_events: 0, score: Score::default(), league }
+    }
+
+    /// Lets the referee decide what a person has called. A recording has the calls like all other
+    /// messages, and refusals as incidents.
+    fn take_calls(&self, blackboard: &mut Blackboard) -> Result<(), BoxError> {
+        let calls: Vec<RefereeCall> = blackboard.signals(REFEREE).map(|call| *call.message).collect();
+        for call in calls {
+            if let Err(reason) = self.pitch.change(|world| carry_out(world, &call)) {
+                let kind = call.kind().as_str_name();
+                let text = format!("refused call {kind}: {reason}");
+                blackboard.publish(INCIDENT, Incident { text })?;
+            }
+        }
+        Ok(())
     }
 
     fn publish_state(&mut self, blackboard: &mut Blackboard) -> Result<(), BoxError> {
@@ -61,6 +76,7 @@ impl World for MatchWorld {
     }
 
     fn advance(&mut self, now: Timestamp, blackboard: &mut Blackboard) -> Result<(), BoxError> {
+        self.take_calls(blackboard)?;
         self.pitch.step();
         if let Some(league) = &self.league {
             for text in league.exchange(&self.pitch, now)? {
@@ -71,7 +87,31 @@ impl World for MatchWorld {
     }
 }
 
-fn truth(world: &monas_sim::SimulatedWorld) -> Truth {
+fn carry_out(world: &mut SimulatedWorld, call: &RefereeCall) -> Result<(), String> {
+    use monas_sim::RefereeCall as Call;
+    let robot = || {
+        let is_meant = |robot: &monas_sim::RobotState| {
+            (u32::from(world.teams()[robot.team].number), u32::from(robot.number)) == (call.team, call.number)
+        };
+        let found = world.robots().iter().position(is_meant);
+        found.ok_or_else(|| format!("no robot has the number {} of team {}", call.number, call.team))
+    };
+    let call = match call.kind() {
+        Kind::None => return Err("nothing is called".into()),
+        Kind::Ready => Call::Ready,
+        Kind::Set => Call::Set,
+        Kind::Play => Call::Play,
+        Kind::EndHalf => Call::EndHalf,
+        Kind::Stop => Call::Stop,
+        Kind::Resume => Call::Resume,
+        Kind::DropBall => Call::DropBall,
+        Kind::Penalize => Call::Penalize(robot()?),
+        Kind::Return => Call::Return(robot()?),
+    };
+    world.call(call).map_err(|error| error.to_string())
+}
+
+fn truth(world: &SimulatedWorld) -> Truth {
     let ball = world.ball();
     let robots = world.robots().iter().map(|robot| TrueRobot {
         team: world.teams()[robot.team].number.into(),
@@ -91,14 +131,19 @@ fn truth(world: &monas_sim::SimulatedWorld) -> Truth {
     }
 }
 
-fn board(world: &monas_sim::SimulatedWorld) -> Score {
+fn board(world: &SimulatedWorld) -> Score {
     let referee = world.referee();
     let teams = world.teams().iter().enumerate().map(|(index, team)| TeamScore {
         team: team.number.into(),
         name: team.name.clone(),
         goals: referee.score()[index],
     });
-    Score { state: state(referee.state()) as i32, half: referee.half().into(), teams: teams.collect() }
+    Score {
+        state: state(referee.state()) as i32,
+        half: referee.half().into(),
+        teams: teams.collect(),
+        stopped: referee.is_stopped(),
+    }
 }
 
 fn state(state: GameState) -> RefereeState {

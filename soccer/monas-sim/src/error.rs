@@ -22,6 +22,8 @@ pub enum ErrorKind {
     Lineup,
     /// No robot has this index.
     UnknownRobot,
+    /// What a person decides as the referee is not possible in the present state of the game.
+    IllegalCall,
 }
 
 impl Error {

@@ -12,7 +12,7 @@ pub enum Offence {
     BallHolding,
     /// A field player was in its own goal area.
     IllegalDefender,
-    /// What a referee outside the simulation has announced as a penalty.
+    /// A person has decided it: with a GameController, or as the referee of the match.
     Announced,
 }
 

@@ -129,7 +129,7 @@ pub use parameters::Parameter;
 pub use physics::Physics;
 pub use pose::{Pose, Vector, Velocity, normalize_angle};
 pub use radio::Radio;
-pub use referee::{Announcement, GameOrder, GameState, Penalty, Referee};
+pub use referee::{Announcement, GameOrder, GameState, Penalty, Referee, RefereeCall};
 pub use rules::MatchRules;
 pub use senses::{Buttons, Senses};
 pub use setup::Setup;

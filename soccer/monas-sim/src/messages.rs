@@ -1,12 +1,13 @@
 //! Messages that the simulated field publishes.
 //!
-//! These topics are ground truth for recordings, viewers and evaluation, not for players.
+//! These topics are ground truth for recordings, viewers and evaluation, not for players. Only
+//! [`REFEREE`](topics::REFEREE) is read: by the field itself.
 
 narukom::include_messages!("monas.sim");
 
 /// The topics of the field's hub.
 pub mod topics {
-    use super::{Incident, Score, Truth};
+    use super::{Incident, RefereeCall, Score, Truth};
 
     narukom::topic! {
         /// Poses of ball and robots, ten times a second.
@@ -15,5 +16,7 @@ pub mod topics {
         pub SCORE: narukom::State<Score> = "sim/score";
         /// Notable events, published when they happen.
         pub INCIDENT: narukom::Data<Incident, 64> = "sim/incident";
+        /// What a person decides as the referee, published from outside of the run.
+        pub REFEREE: narukom::Signal<RefereeCall> = "sim/referee";
     }
 }

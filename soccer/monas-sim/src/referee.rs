@@ -9,6 +9,7 @@
 //! placed by hand, the last do not affect play.
 
 mod game_order;
+mod referee_call;
 
 use crate::fouls::FoulDetector;
 use crate::rng::RandomStream;
@@ -19,6 +20,7 @@ use crate::{
 };
 
 pub use game_order::GameOrder;
+pub use referee_call::RefereeCall;
 
 /// The state of the game. PENALIZED is a state of a single robot: see [`Referee::penalty`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -81,6 +83,8 @@ pub struct Announcement {
     pub attacks: GoalColour,
     /// The penalty that the robot serves.
     pub penalty: Option<Penalty>,
+    /// Whether robots must stand still, whatever the state.
+    pub halted: bool,
 }
 
 /// The referee of a match.
@@ -110,6 +114,9 @@ pub struct Referee {
     coin: RandomStream,
     /// What a referee outside the simulation has decided, if there is one.
     order: Option<GameOrder>,
+    /// What a person has decided since the last step.
+    called: Vec<EventKind>,
+    is_stopped: bool,
 }
 
 impl Referee {
@@ -144,6 +151,8 @@ impl Referee {
             fouls: FoulDetector::new(robots.len()),
             coin,
             order: None,
+            called: Vec::new(),
+            is_stopped: false,
         }
     }
 
@@ -210,12 +219,15 @@ impl Referee {
             opponent_score: self.score[1 - team],
             attacks: self.defends[team].opposite().goal_colour(),
             penalty: self.penalties[robot],
+            halted: self.is_stopped,
         }
     }
 
     /// Whether robots must not move their legs.
     pub(crate) fn holds_robots(&self) -> bool {
-        self.state != GameState::Playing || self.order.as_ref().is_some_and(|order| order.is_halted)
+        self.state != GameState::Playing
+            || self.is_stopped
+            || self.order.as_ref().is_some_and(|order| order.is_halted)
     }
 
     /// Decides nothing by itself any more: a referee outside the simulation decides.
@@ -235,6 +247,10 @@ impl Referee {
             self.state_steps += 1;
             self.apply(&order, scene, events);
             self.order = Some(order);
+            return;
+        }
+        events.append(&mut self.called);
+        if self.is_stopped {
             return;
         }
         if self.state == GameState::Finished {

@@ -6,6 +6,7 @@ use crate::camera::CameraView;
 use crate::passes::PassTracker;
 use crate::pose::{Vector, rotate, shortened};
 use crate::referee::Referee;
+use crate::referee::RefereeCall;
 use crate::return_tracker::ReturnTracker;
 use crate::rng::RandomStream;
 use crate::shots::ShotTracker;
@@ -169,6 +170,15 @@ impl SimulatedWorld {
         }
         self.referee.follow(order);
         Ok(())
+    }
+
+    /// Makes a decision of a person that of the referee; it is carried out in the next step.
+    ///
+    /// # Errors
+    /// [`IllegalCall`](ErrorKind::IllegalCall): it is not possible in the present state of the
+    /// game, or a GameController decides.
+    pub fn call(&mut self, call: RefereeCall) -> Result<(), Error> {
+        self.referee.call(call, &self.now.scene())
     }
 
     /// The measures of the field.

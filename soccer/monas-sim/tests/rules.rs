@@ -292,3 +292,58 @@ fn possession_and_first_touch_are_measured() {
     let touched = world.statistics().time_to_first_touch().unwrap();
     assert!((1.0..3.0).contains(&touched), "{touched}");
 }
+
+#[test]
+fn a_person_decides_what_the_rules_permit() {
+    use monas_sim::RefereeCall as Call;
+    let mut world = world(1);
+    let state = |world: &SimulatedWorld| world.referee().state();
+    assert!(world.call(Call::Play).unwrap_err().to_string().contains("play cannot follow initial"));
+    for (call, next) in
+        [(Call::Ready, GameState::Ready), (Call::Set, GameState::Set), (Call::Play, GameState::Playing)]
+    {
+        world.call(call).unwrap();
+        world.step();
+        assert_eq!(state(&world), next);
+    }
+    assert_eq!(events(&world, |kind| matches!(kind, EventKind::KickOff { .. })).len(), 1);
+    assert!(changes(&world).iter().all(|(from, to)| from.may_become(*to)));
+    // a robot that is penalized leaves the field until it is called back
+    world.call(Call::Penalize(1)).unwrap();
+    assert!(world.call(Call::Penalize(1)).is_err() && world.call(Call::Penalize(9)).is_err());
+    world.step();
+    assert!(!world.robots()[1].on_field);
+    world.call(Call::Return(1)).unwrap();
+    world.step();
+    assert!(world.robots()[1].on_field && world.call(Call::Return(1)).is_err());
+    // the ball is dropped, and the game placed again for a kick-off
+    world.place_ball(Vector::new(1.0, 1.0), Vector::zeros()).unwrap();
+    world.call(Call::DropBall).unwrap();
+    world.step();
+    assert_ne!(world.ball().position, Vector::new(1.0, 1.0));
+    world.call(Call::Ready).unwrap();
+    world.step();
+    assert_eq!((state(&world), world.ball().position), (GameState::Ready, Vector::zeros()));
+    world.call(Call::EndHalf).unwrap();
+    world.step();
+    assert_eq!((world.referee().half(), state(&world)), (2, GameState::Initial));
+}
+
+#[test]
+fn nothing_goes_on_in_a_stopped_game() {
+    use monas_sim::RefereeCall as Call;
+    let mut world = playing(2);
+    assert!(world.call(Call::Resume).is_err());
+    world.call(Call::Stop).unwrap();
+    world.command(1, Command::walk(0.2, 0.0, 0.0)).unwrap();
+    world.step();
+    let (place, left) = (world.robots()[1].pose.position, world.referee().seconds_remaining());
+    assert!(world.announcement(1).unwrap().halted);
+    run(&mut world, 3.0);
+    assert_eq!(world.robots()[1].pose.position, place);
+    assert_eq!(world.referee().seconds_remaining(), left);
+    world.call(Call::Resume).unwrap();
+    run(&mut world, 3.0);
+    assert!((world.robots()[1].pose.position - place).norm() > 0.1);
+    assert!((left - world.referee().seconds_remaining() - 3.0).abs() < 0.02);
+}

@@ -110,6 +110,29 @@ impl ChartView {
         self.count
     }
 
+    /// The active states.
+    pub(crate) fn active(&self) -> &BTreeSet<u32> {
+        &self.active
+    }
+
+    /// Counts changes of the shapes.
+    pub(crate) fn drawing(&self) -> u64 {
+        self.drawing
+    }
+
+    /// The steps from a number on that are kept: time in nanoseconds, exits and entries.
+    pub(crate) fn steps_since(&self, from: u64) -> impl Iterator<Item = (u64, Vec<u32>, Vec<u32>)> {
+        let skipped = (from + self.steps.len() as u64).saturating_sub(self.count) as usize;
+        self.steps.iter().skip(skipped).map(|step| {
+            let nodes = |key: &str| {
+                let nodes = step[key].as_array().into_iter().flatten();
+                nodes.filter_map(|node| node.as_u64()?.try_into().ok()).collect()
+            };
+            let time = step["t"].as_f64().unwrap_or_default();
+            ((time * 1e9).round() as u64, nodes("exits"), nodes("entries"))
+        })
+    }
+
     /// The shapes, for a viewer that asks.
     pub(crate) fn picture(&self) -> &Value {
         &self.picture

@@ -2,11 +2,10 @@
 //!
 //! The server describes itself and its channels as JSON; a client subscribes to channels, and gets
 //! their messages as frames of bytes. Each topic of each host is a channel, with its protobuf
-//! schema. Clients can only read.
+//! schema; further channels are the scene and the states of charts. Clients can only read.
 
 use std::collections::BTreeMap;
 use std::net::TcpStream;
-use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
@@ -16,20 +15,23 @@ use serde_json::{Value, json};
 use tungstenite::protocol::{Role, WebSocketConfig};
 use tungstenite::{Message, WebSocket};
 
+use crate::foxglove_frame::{base64, frame};
+use crate::foxglove_views::FoxgloveViews;
+use crate::live_state::LiveState;
 use crate::time::now;
 use crate::viewer::next_request;
 
 /// The names of the protocol, the one that is preferred first.
 pub(crate) const PROTOCOLS: [&str; 2] = ["foxglove.sdk.v1", "foxglove.websocket.v1"];
 
-/// The first byte of a frame with a message.
-const MESSAGE_DATA: u8 = 1;
-
 /// The longest wait for a request of the client, and for a message of the run.
 const PATIENCE: Duration = Duration::from_millis(5);
 
 /// The interval between two looks for new topics.
 const TOPICS: Duration = Duration::from_secs(1);
+
+/// The interval between two looks at the scene and the states of charts.
+const VIEWS: Duration = Duration::from_nanos(1_000_000_000 / 30);
 
 /// The longest that a client may take to receive a frame; a slower one is disconnected.
 const SLOWEST: Duration = Duration::from_secs(5);
@@ -41,21 +43,15 @@ const BATCH: usize = 512;
 const REQUEST_LIMIT: usize = 64 << 10;
 const SUBSCRIPTIONS: usize = 1000;
 
-/// The run whose topics are served.
-#[derive(Clone, Debug)]
-pub(crate) struct FoxgloveSource {
-    pub(crate) socket: PathBuf,
-}
-
 /// Serves a client until it leaves, is too slow, or the run or the studio ends.
-pub(crate) fn serve(stream: TcpStream, source: &FoxgloveSource, is_over: &AtomicBool) {
+pub(crate) fn serve(stream: TcpStream, state: &LiveState, is_over: &AtomicBool) {
     // A client that has left needs no report, and the end of the run closes the connection.
-    let _ = exchange(stream, source, is_over);
+    let _ = exchange(stream, state, is_over);
 }
 
 fn exchange(
     stream: TcpStream,
-    source: &FoxgloveSource,
+    state: &LiveState,
     is_over: &AtomicBool,
 ) -> Result<(), Box<dyn std::error::Error>> {
     stream.set_nodelay(true)?;
@@ -63,17 +59,17 @@ fn exchange(
     let limits =
         WebSocketConfig::default().max_message_size(Some(REQUEST_LIMIT)).max_frame_size(Some(REQUEST_LIMIT));
     let mut socket = WebSocket::from_raw_socket(stream, Role::Server, Some(limits));
-    let mut client = ControlClient::connect(&source.socket)?;
+    let mut client = ControlClient::connect(&state.socket)?;
     let run = client.describe()?;
     let info = json!({"op": "serverInfo", "name": format!("monas: {}", run.name), "capabilities": [],
         "supportedEncodings": ["protobuf"], "metadata": {}, "sessionId": run.process.to_string()});
     socket.send(Message::text(info.to_string()))?;
     let mut channels = Channels::default();
     let mut watch: Option<WatchStream> = None;
-    let mut due = now();
+    let (mut due, mut views_due) = (now(), now());
     while !is_over.load(Ordering::SeqCst) {
         if now() >= due {
-            let news = channels.look(&mut client)?;
+            let news = channels.look(&mut client, state)?;
             if !news.is_empty() {
                 let text = json!({"op": "advertise", "channels": news}).to_string();
                 socket.send(Message::text(text))?;
@@ -83,12 +79,18 @@ fn exchange(
         if let Some(request) = next_request(&mut socket, PATIENCE)? {
             match channels.handle(&request) {
                 Ok(false) => {}
-                Ok(true) => watch = channels.watch(&source.socket)?,
+                Ok(true) => watch = channels.watch(&state.socket)?,
                 Err(reason) => {
                     let status = json!({"op": "status", "level": 2, "message": reason});
                     socket.send(Message::text(status.to_string()))?;
                 }
             }
+        }
+        if now() >= views_due {
+            for frame in channels.view_frames(state) {
+                socket.send(Message::binary(frame))?;
+            }
+            views_due = now() + VIEWS;
         }
         let Some(watch) = &mut watch else { continue };
         let mut patience = PATIENCE;
@@ -108,13 +110,20 @@ fn exchange(
 struct Channels {
     /// By host and topic.
     ids: BTreeMap<(String, String), u64>,
+    views: FoxgloveViews,
+    /// The largest number of a channel.
+    last: u64,
     /// By the client's number: the channel.
     subscriptions: BTreeMap<u32, u64>,
 }
 
 impl Channels {
-    /// The topics that are new.
-    fn look(&mut self, client: &mut ControlClient) -> Result<Vec<Value>, monas_link::Error> {
+    /// The channels that are new.
+    fn look(
+        &mut self,
+        client: &mut ControlClient,
+        state: &LiveState,
+    ) -> Result<Vec<Value>, monas_link::Error> {
         let mut news = Vec::new();
         for topic in client.topics("", "")? {
             let key = (topic.host.clone(), topic.path.clone());
@@ -122,13 +131,29 @@ impl Channels {
                 continue;
             }
             let schema = client.schema(&topic.path)?;
-            let id = self.ids.len() as u64 + 1;
+            self.last += 1;
+            let id = self.last;
             news.push(json!({"id": id, "topic": format!("/{}/{}", topic.host, topic.path),
                 "encoding": "protobuf", "schemaName": schema.r#type, "schema": base64(&schema.descriptors),
                 "schemaEncoding": "protobuf"}));
             self.ids.insert(key, id);
         }
+        let Channels { views, last, .. } = self;
+        news.extend(views.look(state, || {
+            *last += 1;
+            *last
+        }));
         Ok(news)
+    }
+
+    /// The frames of channels that are no topics.
+    fn view_frames(&mut self, state: &LiveState) -> Vec<Vec<u8>> {
+        let Channels { views, subscriptions, .. } = self;
+        let subscribers = |channel: u64| {
+            let of_channel = subscriptions.iter().filter(|(_, known)| **known == channel);
+            of_channel.map(|(id, _)| *id).collect()
+        };
+        views.frames(state, subscribers)
     }
 
     /// Handles a request. Returns whether the subscriptions are others.
@@ -145,7 +170,7 @@ impl Channels {
                     let (Some(id), Some(channel)) = (number(&one["id"]), one["channelId"].as_u64()) else {
                         return Err("a subscription has the numbers `id` and `channelId`".into());
                     };
-                    if !self.ids.values().any(|known| *known == channel) {
+                    if !self.ids.values().any(|known| *known == channel) && !self.views.has(channel) {
                         return Err(format!("there is no channel {channel}"));
                     }
                     if self.subscriptions.len() >= SUBSCRIPTIONS {
@@ -177,49 +202,10 @@ impl Channels {
         ControlClient::connect(socket)?.watch_all("", &topics, true).map(Some)
     }
 
-    /// The frames of a message: its kind, the subscription, the time of publication in nanoseconds,
-    /// the encoding.
+    /// The frames of a message.
     fn frames(&self, seen: &Seen) -> Vec<Vec<u8>> {
         let Some(channel) = self.ids.get(&(seen.from.clone(), seen.path.clone())) else { return Vec::new() };
         let subscribed = self.subscriptions.iter().filter(|(_, known)| *known == channel);
-        let frame = |(id, _): (&u32, &u64)| {
-            let mut frame = Vec::with_capacity(13 + seen.payload.len());
-            frame.push(MESSAGE_DATA);
-            frame.extend(id.to_le_bytes());
-            frame.extend(seen.local.to_le_bytes());
-            frame.extend(&seen.payload);
-            frame
-        };
-        subscribed.map(frame).collect()
-    }
-}
-
-/// The protocol's encoding of bytes in JSON.
-fn base64(bytes: &[u8]) -> String {
-    const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);
-    for chunk in bytes.chunks(3) {
-        let byte = |place: usize| u32::from(chunk.get(place).copied().unwrap_or_default());
-        let bits = byte(0) << 16 | byte(1) << 8 | byte(2);
-        for place in 0..4 {
-            let digit = DIGITS[(bits >> (18 - 6 * place) & 63) as usize];
-            text.push(if place <= chunk.len() { char::from(digit) } else { '=' });
-        }
-    }
-    text
-}
-
-#[cfg(test)]
-mod tests {
-    use super::base64;
-
-    #[test]
-    fn bytes_are_encoded_with_padding() {
-        // RFC 4648, section 10
-        for (bytes, text) in
-            [("", ""), ("f", "Zg=="), ("fo", "Zm8="), ("foo", "Zm9v"), ("foobar", "Zm9vYmFy")]
-        {
-            assert_eq!(base64(bytes.as_bytes()), text);
-        }
+        subscribed.map(|(id, _)| frame(*id, seen.local, &seen.payload)).collect()
     }
 }

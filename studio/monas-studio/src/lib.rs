@@ -2,9 +2,10 @@
 //!
 //! A [`Studio`] serves a page on loopback: statecharts with their active states, agents, topics,
 //! the log, and a view from above. It watches a run through its control socket, as the commands of
-//! the terminal do, so that a run without a studio pays nothing, and a viewer can neither block
-//! a run nor change it. What is drawn from above is a [`Scene`], which the program gives: this
-//! crate knows no sport.
+//! the terminal do, so that a run without a studio pays nothing, and a viewer cannot block a run.
+//! It changes one only if the studio was [allowed](StudioSettings::allows_control) to, by the same
+//! requests as these commands. What is drawn from above is a [`Scene`], which the program gives:
+//! this crate knows no sport.
 //!
 //! # Design rationale
 //!
@@ -16,6 +17,8 @@
 //! - **Only its own page is answered.** The `Host` must name this server, an `Origin` must be its
 //!   own, and any other address than loopback needs a random token. Viewers that speak Foxglove's
 //!   protocol get the topics of a run under the same rules; origins of such can be allowed.
+//! - **The server refuses, not the page.** Requests that change a run are a type of their own, read
+//!   strictly, and refused in one place.
 //! - **The drawing comes from the run.** Shapes are those of [`yase_export::to_picture`], the same
 //!   layout as in drawings of models. The page only draws them.
 //!
@@ -37,28 +40,43 @@ mod asset;
 mod chart_history;
 #[cfg_attr(not(unix), allow(dead_code, reason = "only runs of Unix are followed"))]
 mod chart_view;
+#[cfg_attr(not(unix), allow(dead_code, reason = "only runs of Unix are changed"))]
+mod control_request;
 mod error;
 #[cfg(unix)]
 mod foxglove;
+#[cfg(unix)]
+mod foxglove_frame;
+#[cfg(unix)]
+mod foxglove_views;
 mod guard_atom;
 mod http_request;
 #[cfg(unix)]
 mod live_run;
 #[cfg(unix)]
 mod live_session;
+#[cfg(unix)]
+mod live_state;
 mod message_chain;
 mod message_decoder;
 mod pace;
 mod read_value;
 #[cfg(unix)]
+mod run_control;
+#[cfg(unix)]
 mod run_ring;
 #[cfg_attr(not(unix), allow(dead_code, reason = "only runs of Unix are followed"))]
 mod run_view;
 mod scene;
+#[cfg_attr(not(unix), allow(dead_code, reason = "only runs of Unix are served to others"))]
+mod scene_update;
 mod server;
 mod source;
+#[cfg_attr(not(unix), allow(dead_code, reason = "only runs of Unix are served to others"))]
+mod state_name;
 mod tape_difference;
 mod tape_moment;
+mod tape_pair;
 mod tape_run;
 mod tape_session;
 mod time;
@@ -75,7 +93,8 @@ pub use message_decoder::message_json;
 pub use pace::Pace;
 pub use read_value::ReadValue;
 pub use scene::{
-    Banner, Belief, Body, Ground, GroundMark, Scene, SceneEvent, SceneMessages, SceneObject, ScenePicture,
+    Banner, Belief, Body, Ground, GroundMark, Scene, SceneAction, SceneEvent, SceneMessages, SceneObject,
+    ScenePicture,
 };
 pub use server::{ListenAddress, Studio, StudioSettings};
 pub use tape_difference::{TapeDifference, TapeEvent};

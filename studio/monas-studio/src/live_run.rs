@@ -1,9 +1,9 @@
 //! A run on this computer, seen through its control socket.
 
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
+use std::sync::Arc;
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender, TryRecvError};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
@@ -15,11 +15,11 @@ use serde_json::{Value, json};
 
 use crate::chart_view::{ChartKey, seconds};
 use crate::error::{Error, ErrorKind};
-use crate::foxglove::FoxgloveSource;
 use crate::live_session::LiveSession;
+use crate::live_state::LiveState;
 use crate::pace::Pace;
 use crate::run_ring::RunRing;
-use crate::run_view::{CHART, LOG, Link, MODEL, RunView, ViewedMessage};
+use crate::run_view::{CHART, LOG, Link, MODEL, ViewedMessage};
 use crate::scene::{Scene, SceneEvent};
 use crate::source::{Session, Source};
 use crate::time::now;
@@ -44,25 +44,16 @@ pub(crate) struct LiveRun {
     thread: Option<JoinHandle<()>>,
 }
 
-/// A run as it is known to all of its viewers.
-pub(crate) struct LiveState {
-    pub(crate) socket: PathBuf,
-    pub(crate) scene: Option<Arc<dyn Scene>>,
-    pub(crate) pace: Option<Pace>,
-    view: Mutex<RunView>,
-    /// What the run was before. It is locked after the view.
-    ring: Mutex<RunRing>,
-}
-
 impl LiveRun {
-    /// Connects to the run whose control socket is at a path.
+    /// Connects to the run whose control socket is at a path; viewers may change it if
+    /// `allows_control`.
     pub(crate) fn new(
         socket: &Path,
         scene: Option<Arc<dyn Scene>>,
         pace: Option<Pace>,
+        allows_control: bool,
     ) -> Result<LiveRun, Error> {
-        let (socket, view, ring) = (socket.to_owned(), Mutex::default(), Mutex::default());
-        let state = Arc::new(LiveState { socket, scene, pace, view, ring });
+        let state = Arc::new(LiveState::new(socket.to_owned(), scene, pace, allows_control));
         let collector = state.clone();
         let (ends, ended) = mpsc::channel();
         let thread =
@@ -85,20 +76,16 @@ impl Source for LiveRun {
         Box::new(LiveSession::new(self.state.clone()))
     }
 
-    fn foxglove(&self) -> Option<FoxgloveSource> {
-        Some(FoxgloveSource { socket: self.state.socket.clone() })
+    fn allows_control(&self) -> bool {
+        self.state.allows_control
+    }
+
+    fn live_state(&self) -> Option<Arc<LiveState>> {
+        Some(self.state.clone())
     }
 }
 
 impl LiveState {
-    pub(crate) fn view(&self) -> MutexGuard<'_, RunView> {
-        self.view.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
-    pub(crate) fn ring(&self) -> MutexGuard<'_, RunRing> {
-        self.ring.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
     /// Follows the run, and the next one with its name, until the studio ends.
     fn collect(&self, ended: &Receiver<()>) {
         loop {

@@ -8,8 +8,10 @@ use monas_link::control::{ControlClient, WatchStream};
 use serde_json::{Value, json};
 
 use crate::chart_view::seconds;
-use crate::live_run::LiveState;
+use crate::control_request::ControlRequest;
+use crate::live_state::LiveState;
 use crate::pace::Pace;
+use crate::run_control;
 use crate::run_view::{RunView, ViewCursor};
 use crate::source::Session;
 use crate::viewer_request::ViewerRequest;
@@ -60,7 +62,7 @@ struct WatchedTopic {
 impl Session for LiveSession {
     fn handle(&mut self, request: ViewerRequest) -> Option<Value> {
         match request {
-            ViewerRequest::Picture(key) => {
+            ViewerRequest::Picture { key, .. } => {
                 let view = self.state.view();
                 Some(json!({"type": "picture", "key": key, "picture": view.picture(&key)}))
             }
@@ -103,6 +105,7 @@ impl Session for LiveSession {
                 self.go_live();
                 None
             }
+            ViewerRequest::Control(id, request) => Some(self.control(id, request)),
             ViewerRequest::Why { .. } | ViewerRequest::WhyTransition { .. } => None,
         }
     }
@@ -126,11 +129,15 @@ impl Session for LiveSession {
                 (view.frame(&mut self.cursor, scene.as_deref()), view.now)
             }
         };
-        let facts = self.facts(frame.as_ref().is_some_and(|frame| frame.get("run").is_some()));
+        let is_new = frame.as_ref().is_some_and(|frame| frame.get("run").is_some());
+        let facts = self.facts(is_new);
         if frame.is_none() && sample.is_none() && facts.is_none() && pace == self.pace {
             return None;
         }
         let mut frame = frame.unwrap_or_else(|| json!({"type": "frame", "now": seconds(now)}));
+        if is_new {
+            frame["run"]["control"] = json!(self.state.allows_control);
+        }
         if let Some(sample) = sample {
             frame["sample"] = sample;
         }
@@ -161,6 +168,19 @@ impl LiveSession {
             is_elsewhere: false,
             ring: None,
         }
+    }
+
+    /// Changes the run, if viewers may; the reply has the number of the request.
+    fn control(&self, id: Option<u64>, request: Result<ControlRequest, String>) -> Value {
+        let mut reply = match request {
+            _ if !self.state.allows_control => {
+                json!({"done": false, "reason": "the studio was started without --allow-control: it only looks"})
+            }
+            Ok(request) => run_control::execute(&self.state, request),
+            Err(reason) => json!({"done": false, "reason": format!("the request cannot be read: {reason}")}),
+        };
+        (reply["type"], reply["id"]) = (json!("reply"), json!(id));
+        reply
     }
 
     /// The facts of the timeline, if the viewer does not know them.

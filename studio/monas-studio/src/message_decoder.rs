@@ -24,6 +24,17 @@ impl MessageDecoder {
         self.by_topic.insert(topic.to_owned(), found);
     }
 
+    /// The message type of a topic.
+    ///
+    /// # Errors
+    /// It is not known, or its schema cannot be used.
+    pub(crate) fn descriptor(&self, topic: &str) -> Result<MessageDescriptor, String> {
+        self.by_topic
+            .get(topic)
+            .cloned()
+            .unwrap_or_else(|| Err(format!("the type of `{topic}` is not known")))
+    }
+
     /// A message as JSON; for one that cannot be read a text that says why.
     pub(crate) fn decode(&self, topic: &str, bytes: &[u8]) -> Value {
         let unread = |reason: &str| Value::String(format!("({} bytes: {reason})", bytes.len()));

@@ -86,6 +86,8 @@ pub(crate) struct ViewCursor {
     now: u64,
     scene: u64,
     ground: Option<Value>,
+    /// The actions of the scene.
+    actions: Option<Value>,
     table: u64,
     line: u64,
     /// By chart: its revision, and its steps.
@@ -232,7 +234,7 @@ impl RunView {
         news
     }
 
-    /// The scene; its ground only if it has changed.
+    /// The scene; its ground and actions only if they have changed.
     fn scene_object(&mut self, cursor: &mut ViewCursor, scene: &dyn Scene) -> Value {
         let picture = self.scene_picture(scene);
         let ground = json!(picture.ground);
@@ -242,7 +244,17 @@ impl RunView {
             object["ground"] = ground.clone();
             cursor.ground = Some(ground);
         }
+        let actions = json!(picture.actions);
+        if cursor.actions.as_ref() != Some(&actions) {
+            object["actions"] = actions.clone();
+            cursor.actions = Some(actions);
+        }
         object
+    }
+
+    /// Counts messages of the scene.
+    pub(crate) fn scene_revision(&self) -> u64 {
+        self.scene_revision
     }
 
     pub(crate) fn scene_picture(&mut self, scene: &dyn Scene) -> ScenePicture {
@@ -285,11 +297,16 @@ fn agent_object(agent: &AgentEntry) -> Value {
         .activities
         .iter()
         .map(|activity| {
-            json!({"name": activity.name, "state": activity.state, "calls": activity.calls,
+            let parameters =
+                activity.parameters.iter().map(|one| (one.key.clone(), one.value.clone().into()));
+            json!({"name": activity.name, "state": activity.state,
+                "parameters": Value::Object(parameters.collect()), "calls": activity.calls,
                 "failures": activity.failures, "time": times(activity.call_time.as_ref())})
         })
         .collect();
-    json!({"host": agent.host, "name": agent.name, "state": agent.state, "reason": agent.reason,
+    let charts: Vec<Value> =
+        agent.charts.iter().map(|chart| json!({"model": chart.model, "state": chart.state})).collect();
+    json!({"host": agent.host, "name": agent.name, "charts": charts, "state": agent.state, "reason": agent.reason,
         "frequency": agent.frequency, "cycles": agent.cycles, "overruns": agent.overruns, "missed": agent.missed,
         "steps": agent.micro_steps, "time": times(agent.cycle_time.as_ref()), "activities": activities})
 }

@@ -79,6 +79,23 @@ pub struct ScenePicture {
     pub beliefs: Vec<Belief>,
     /// What is said above the plane.
     pub banner: Option<Banner>,
+    /// What viewers can do that may change the run.
+    pub actions: Vec<SceneAction>,
+}
+
+/// A message that a viewer publishes at the press of a button.
+#[derive(Clone, PartialEq, Default, Debug, Serialize)]
+pub struct SceneAction {
+    /// The text of the button.
+    pub label: String,
+    /// The host whose body the action is about; none for one about all.
+    pub about: Option<String>,
+    /// The host on which the message is published.
+    pub host: String,
+    /// Its topic.
+    pub topic: String,
+    /// The message as JSON.
+    pub message: Value,
 }
 
 /// The plane.

@@ -23,6 +23,7 @@ use crate::live_run::LiveRun;
 use crate::pace::Pace;
 use crate::scene::Scene;
 use crate::source::Source;
+use crate::tape_pair::TapePair;
 use crate::tape_run::TapeRun;
 use crate::viewer;
 
@@ -72,6 +73,8 @@ pub struct StudioSettings {
     /// Origins of pages that may read a run by Foxglove's protocol, such as
     /// `https://app.foxglove.dev`; programs that are no pages need no origin.
     pub origins: Vec<String>,
+    /// Whether viewers may change the run: its agents and models, messages, and events.
+    pub allows_control: bool,
 }
 
 /// A running studio; dropping it ends it.
@@ -100,8 +103,8 @@ impl Studio {
     /// The address is not available.
     #[cfg(unix)]
     pub fn of_run(socket: &Path, settings: StudioSettings) -> Result<Studio, Error> {
-        let StudioSettings { listen, scene, pace, origins } = settings;
-        Studio::serve(listen, origins, Box::new(LiveRun::new(socket, scene, pace)?))
+        let StudioSettings { listen, scene, pace, origins, allows_control } = settings;
+        Studio::serve(listen, origins, Box::new(LiveRun::new(socket, scene, pace, allows_control)?))
     }
 
     /// Serves a tape.
@@ -110,6 +113,14 @@ impl Studio {
     /// The address is not available.
     pub fn of_tape(tape: TapeRun, settings: StudioSettings) -> Result<Studio, Error> {
         Studio::serve(settings.listen, settings.origins, Box::new(tape))
+    }
+
+    /// Serves a tape with another one beside it, on the timeline of the first.
+    ///
+    /// # Errors
+    /// The address is not available.
+    pub fn of_tapes(tape: TapeRun, other: TapeRun, settings: StudioSettings) -> Result<Studio, Error> {
+        Studio::serve(settings.listen, settings.origins, Box::new(TapePair::new(tape, other)))
     }
 
     fn serve(
@@ -282,7 +293,7 @@ impl ServerState {
             return reply(&mut stream, "503 Service Unavailable", "text/plain", text.as_bytes(), "");
         };
         #[cfg(unix)]
-        let others = self.source.foxglove();
+        let others = self.source.live_state();
         #[cfg(unix)]
         if protocol.is_some() && others.is_none() {
             let text = b"only a run is served by this protocol\n";
@@ -297,11 +308,12 @@ impl ServerState {
         );
         stream.write_all(head.as_bytes())?;
         #[cfg(unix)]
-        if let (Some(_), Some(source)) = (protocol, others) {
-            foxglove::serve(stream, &source, &self.is_over);
+        if let (Some(_), Some(run)) = (protocol, others) {
+            foxglove::serve(stream, &run, &self.is_over);
             return Ok(());
         }
-        viewer::serve(stream, self.source.open(), &self.is_over);
+        let limit = viewer::request_limit(self.source.allows_control());
+        viewer::serve(stream, self.source.open(), limit, &self.is_over);
         Ok(())
     }
 }

@@ -1,11 +1,13 @@
 //! Where a studio has its view from.
 
+#[cfg(unix)]
+use std::sync::Arc;
 use std::time::Duration;
 
 use serde_json::Value;
 
 #[cfg(unix)]
-use crate::foxglove::FoxgloveSource;
+use crate::live_state::LiveState;
 use crate::viewer_request::ViewerRequest;
 
 /// A run or a tape that viewers can open.
@@ -13,9 +15,14 @@ pub(crate) trait Source: Send + Sync {
     /// A view for one viewer.
     fn open(&self) -> Box<dyn Session>;
 
-    /// What is served to viewers of others, if it is a run.
+    /// Whether viewers may change it.
+    fn allows_control(&self) -> bool {
+        false
+    }
+
+    /// The run that is served to viewers of others, if it is one.
     #[cfg(unix)]
-    fn foxglove(&self) -> Option<FoxgloveSource> {
+    fn live_state(&self) -> Option<Arc<LiveState>> {
         None
     }
 }

@@ -85,6 +85,6 @@ impl TapeMoment {
             of_agent.map(|(_, (count, _))| count).sum()
         };
         json!({"host": host, "name": name, "state": "recorded", "reason": "", "frequency": 0.0, "cycles": count(CYCLE),
-            "overruns": 0, "missed": 0, "steps": count(CHART), "time": null, "activities": []})
+            "overruns": 0, "missed": 0, "steps": count(CHART), "time": null, "charts": [], "activities": []})
     }
 }

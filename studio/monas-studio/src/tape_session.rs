@@ -34,11 +34,48 @@ pub(crate) struct TapeSession {
     watched: Option<(String, String)>,
     /// The message of the watched topic that was sent last.
     sent: Option<usize>,
+    /// What is marked on the timeline.
+    events: Vec<Value>,
+    other: Option<OtherMoment>,
+}
+
+/// The same moment of the tape beside.
+struct OtherMoment {
+    tape: TapeRun,
+    moment: TapeMoment,
+    cursor: ViewCursor,
+}
+
+impl OtherMoment {
+    /// Goes to a time. Returns whether it is not a later moment.
+    fn go_to(&mut self, time: u64) -> bool {
+        let count = self.tape.count_until(time);
+        let kept = self.tape.moment_before(count);
+        let is_elsewhere = count < self.moment.count || kept.count > self.moment.count;
+        if is_elsewhere {
+            self.moment = kept.clone();
+        }
+        self.moment.advance(&self.tape, count);
+        self.moment.view.now = time;
+        is_elsewhere
+    }
+
+    fn frame(&mut self, is_elsewhere: bool) -> Option<Value> {
+        if is_elsewhere {
+            self.cursor = ViewCursor::default();
+        }
+        let mut frame = self.moment.view.frame(&mut self.cursor, self.tape.scene())?;
+        if is_elsewhere {
+            frame["elsewhere"] = json!(true);
+        }
+        Some(frame)
+    }
 }
 
 impl TapeSession {
     pub(crate) fn new(tape: TapeRun) -> TapeSession {
         let moment = tape.moment_before(0).clone();
+        let events = tape.events().to_vec();
         TapeSession {
             tape,
             moment,
@@ -49,7 +86,24 @@ impl TapeSession {
             tables: None,
             watched: None,
             sent: None,
+            events,
+            other: None,
         }
+    }
+
+    /// A view of two tapes, with what is marked on the timeline of both.
+    pub(crate) fn beside(tape: TapeRun, other: TapeRun, events: Vec<Value>) -> TapeSession {
+        let moment = other.moment_before(0).clone();
+        let other = Some(OtherMoment { tape: other, moment, cursor: ViewCursor::default() });
+        TapeSession { events, other, ..TapeSession::new(tape) }
+    }
+
+    fn picture(&self, key: &str, is_beside: bool) -> Value {
+        let view = match &self.other {
+            Some(other) if is_beside => &other.moment.view,
+            _ => &self.moment.view,
+        };
+        json!({"type": "picture", "key": key, "beside": is_beside, "picture": view.picture(key)})
     }
 
     /// Goes to the moment after some messages, at a time.
@@ -103,17 +157,17 @@ impl TapeSession {
 impl Session for TapeSession {
     fn handle(&mut self, request: ViewerRequest) -> Option<Value> {
         match request {
-            ViewerRequest::Picture(key) => {
-                return Some(
-                    json!({"type": "picture", "key": key, "picture": self.moment.view.picture(&key)}),
-                );
-            }
+            ViewerRequest::Picture { key, is_beside } => return Some(self.picture(&key, is_beside)),
             ViewerRequest::Watch { host, topic } => {
                 self.watched = Some((host, topic));
                 self.sent = None;
             }
             ViewerRequest::Unwatch => self.watched = None,
             ViewerRequest::Live => {}
+            ViewerRequest::Control(id, _) => {
+                let reason = "a tape cannot be changed";
+                return Some(json!({"type": "reply", "id": id, "done": false, "reason": reason}));
+            }
             ViewerRequest::Pace(factor) => {
                 // At its end a tape is played again from its begin.
                 if factor > 0.0 && self.moment.view.now >= self.tape.end() {
@@ -160,20 +214,28 @@ impl Session for TapeSession {
             self.cursor = ViewCursor::default();
         }
         let sample = self.sample();
+        let is_elsewhere = self.is_elsewhere;
+        let beside = self.other.as_mut().and_then(|other| {
+            let has_jumped = other.go_to(now) || is_elsewhere;
+            other.frame(has_jumped)
+        });
         let frame = self.moment.view.frame(&mut self.cursor, self.tape.scene());
-        if frame.is_none() && sample.is_none() && !self.is_new {
+        if frame.is_none() && sample.is_none() && beside.is_none() && !self.is_new {
             return None;
         }
         let mut frame = frame.unwrap_or_else(|| json!({"type": "frame", "now": seconds(now)}));
         if let Some(sample) = sample {
             frame["sample"] = sample;
         }
+        if let Some(beside) = beside {
+            frame["beside"] = beside;
+        }
         if std::mem::take(&mut self.is_elsewhere) {
             frame["elsewhere"] = json!(true);
         }
         if std::mem::take(&mut self.is_new) || frame.get("run").is_some() {
             frame["tape"] = json!({"begin": seconds(self.tape.begin()), "end": seconds(self.tape.end()),
-                "factor": self.factor, "events": self.tape.events()});
+                "factor": self.factor, "events": self.events});
         }
         Some(frame)
     }

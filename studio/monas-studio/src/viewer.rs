@@ -24,23 +24,34 @@ const SLOWEST: Duration = Duration::from_secs(5);
 /// slow, and one that has frozen must not hold up the end of a run for longer.
 const FAREWELL: Duration = Duration::from_secs(2);
 
-/// The longest request of a page, in bytes.
+/// The longest request of a page, in bytes; of one that may change the run, which sends models.
 const REQUEST_LIMIT: usize = 16 << 10;
+const CONTROL_LIMIT: usize = 1 << 20;
 
 /// The most requests that are handled between two frames.
 const REQUESTS: usize = 32;
 
-/// Serves a page until it leaves, is too slow, or the studio ends.
-pub(crate) fn serve(stream: TcpStream, mut session: Box<dyn Session>, is_over: &AtomicBool) {
-    // A page that has left needs no report.
-    let _ = exchange(stream, &mut *session, is_over);
+/// The longest request of a page, in bytes.
+pub(crate) fn request_limit(allows_control: bool) -> usize {
+    if allows_control { CONTROL_LIMIT } else { REQUEST_LIMIT }
 }
 
-fn exchange(stream: TcpStream, session: &mut dyn Session, is_over: &AtomicBool) -> tungstenite::Result<()> {
+/// Serves a page until it leaves, is too slow, sends a request of more than `limit` bytes, or the
+/// studio ends.
+pub(crate) fn serve(stream: TcpStream, mut session: Box<dyn Session>, limit: usize, is_over: &AtomicBool) {
+    // A page that has left needs no report.
+    let _ = exchange(stream, &mut *session, limit, is_over);
+}
+
+fn exchange(
+    stream: TcpStream,
+    session: &mut dyn Session,
+    limit: usize,
+    is_over: &AtomicBool,
+) -> tungstenite::Result<()> {
     stream.set_nodelay(true)?;
     stream.set_write_timeout(Some(SLOWEST))?;
-    let limits =
-        WebSocketConfig::default().max_message_size(Some(REQUEST_LIMIT)).max_frame_size(Some(REQUEST_LIMIT));
+    let limits = WebSocketConfig::default().max_message_size(Some(limit)).max_frame_size(Some(limit));
     let mut socket = WebSocket::from_raw_socket(stream, Role::Server, Some(limits));
     let mut last = now();
     let mut due = last;

@@ -2,11 +2,13 @@
 
 use serde_json::Value;
 
-/// A request of a page. None of them changes what a run does.
+use crate::control_request::ControlRequest;
+
+/// A request of a page. Only [`Control`](ViewerRequest::Control) changes what a run does.
 #[derive(Clone, PartialEq, Debug)]
 pub(crate) enum ViewerRequest {
-    /// The shapes of a chart.
-    Picture(String),
+    /// The shapes of a chart; of the tape beside, if it is one of that.
+    Picture { key: String, is_beside: bool },
     /// Messages of a topic of a host from now on; none of any other.
     Watch { host: String, topic: String },
     /// No messages from now on.
@@ -25,6 +27,9 @@ pub(crate) enum ViewerRequest {
     Jump { key: String, transition: u32, is_back: bool },
     /// The next step of a chart on a tape, or the one before.
     Step { key: String, is_back: bool },
+    /// A change of the run, or why the request for it cannot be read; with the number of the
+    /// request.
+    Control(Option<u64>, Result<ControlRequest, String>),
 }
 
 impl ViewerRequest {
@@ -34,7 +39,9 @@ impl ViewerRequest {
         let word = |key: &str| value[key].as_str().map(str::to_owned);
         let number = |key: &str| value[key].as_u64().and_then(|number| number.try_into().ok());
         match value["type"].as_str()? {
-            "picture" => Some(ViewerRequest::Picture(word("key")?)),
+            "picture" => {
+                Some(ViewerRequest::Picture { key: word("key")?, is_beside: value["beside"] == true })
+            }
             "watch" => Some(ViewerRequest::Watch { host: word("host")?, topic: word("topic")? }),
             "live" => Some(ViewerRequest::Live),
             "unwatch" => Some(ViewerRequest::Unwatch),
@@ -52,6 +59,10 @@ impl ViewerRequest {
             }),
             "step" => Some(ViewerRequest::Step { key: word("key")?, is_back: value["back"].as_bool()? }),
             "seek" => Some(ViewerRequest::Seek(value["seconds"].as_f64().filter(|time| *time >= 0.0)?)),
+            name if ControlRequest::is_type(name) => {
+                let (id, request) = ControlRequest::read(value);
+                Some(ViewerRequest::Control(id, request))
+            }
             _ => None,
         }
     }
@@ -68,7 +79,7 @@ mod tests {
         assert_eq!(parse(r#"{"type":"watch","host":"a","topic":"b/c"}"#), Some(watch));
         assert_eq!(parse(r#"{"type":"pace","factor":null}"#), Some(ViewerRequest::Pace(f64::INFINITY)));
         assert_eq!(parse(r#"{"type":"pace","factor":-1}"#), None);
-        for wrong in ["", "1", "[]", r#"{"type":"publish","host":"a"}"#, r#"{"type":"watch","host":1}"#] {
+        for wrong in ["", "1", "[]", r#"{"type":"explode","host":"a"}"#, r#"{"type":"watch","host":1}"#] {
             assert_eq!(parse(wrong), None, "{wrong}");
         }
     }

@@ -100,6 +100,7 @@ pub(crate) fn execute(
 }
 
 /// The lines of standard input, read by a thread; the channel closes at their end.
+#[expect(clippy::disallowed_methods, reason = "reading standard input blocks")]
 fn input_lines() -> Receiver<String> {
     let (sender, receiver) = channel();
     std::thread::spawn(move || {

@@ -130,7 +130,9 @@ pub(crate) fn execute(
     }
     #[cfg(unix)]
     if arguments.listen.is_given() && !arguments.studio {
-        return Err(CommandFailure::Usage("--listen is for the studio: add --studio".into()));
+        return Err(CommandFailure::Usage(
+            "--listen, --allow-origin and --allow-control are for the studio: add --studio".into(),
+        ));
     }
     if kind == ConfigurationKind::Agents && arguments.pace.is_some() {
         return Err(CommandFailure::Usage(

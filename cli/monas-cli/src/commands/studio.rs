@@ -23,6 +23,9 @@ pub(crate) struct StudioArguments {
     /// Open this tape, at any moment of the run; without it, view a run on this computer.
     #[arg(value_hint = ValueHint::FilePath)]
     tape: Option<PathBuf>,
+    /// Show this tape beside the other, on its timeline: another future of `monas tape what-if`.
+    #[arg(long, value_name = "TAPE", requires = "tape", value_hint = ValueHint::FilePath)]
+    beside: Option<PathBuf>,
     /// The run, by the name of its control socket; not needed if there is only one.
     #[arg(long, value_name = "NAME", conflicts_with = "tape", add = ArgValueCandidates::new(runs))]
     run: Option<String>,
@@ -33,7 +36,7 @@ pub(crate) struct StudioArguments {
 }
 
 /// Where a studio listens.
-#[derive(Args, Debug, Default)]
+#[derive(Args, Clone, Debug, Default)]
 pub(crate) struct ListenArgument {
     /// The studio's address, such as 127.0.0.1:8080; 127.0.0.1 with the first free port from 4810
     /// on if not given. At any other address than loopback the page needs a token, which is part of
@@ -44,11 +47,16 @@ pub(crate) struct ListenArgument {
     /// https://app.foxglove.dev. May be given several times.
     #[arg(long = "allow-origin", value_name = "ORIGIN")]
     origins: Vec<String>,
+    /// Let pages change the run, as `monas agent`, `monas topic pub` and `monas chart raise` do:
+    /// agents, activities, models, messages, events, and the referee of a match. Without it they
+    /// only look.
+    #[arg(long)]
+    allow_control: bool,
 }
 
 impl ListenArgument {
     pub(crate) fn is_given(&self) -> bool {
-        self.listen.is_some() || !self.origins.is_empty()
+        self.listen.is_some() || !self.origins.is_empty() || self.allow_control
     }
 }
 
@@ -60,7 +68,12 @@ pub(crate) fn execute(
     let format = arguments.format.value;
     let interrupt = Interrupt::for_console(console).map_err(|error| CommandFailure::failed(format, error))?;
     let _studio = match &arguments.tape {
-        Some(tape) => serve_tape(tape, &arguments.listen, format, console)?,
+        Some(_) if arguments.listen.allow_control => {
+            return Err(CommandFailure::Usage(
+                "--allow-control is for a run; a tape cannot be changed".into(),
+            ));
+        }
+        Some(tape) => serve_tape(tape, arguments.beside.as_deref(), &arguments.listen, format, console)?,
         None => {
             let selector = RunSelector::of(arguments.run.clone(), None, arguments.format);
             serve(&connection::socket(&selector)?, &arguments.listen, None, format, console)?
@@ -79,8 +92,8 @@ pub(crate) fn serve(
     format: Format,
     console: &mut CommandOutput<'_>,
 ) -> Result<Studio, CommandFailure> {
-    let settings =
-        StudioSettings { listen: listen.listen, scene: scene(), pace, origins: listen.origins.clone() };
+    let ListenArgument { listen, origins, allow_control } = listen.clone();
+    let settings = StudioSettings { listen, scene: scene(), pace, origins, allows_control: allow_control };
     let studio = Studio::of_run(socket, settings).map_err(|error| CommandFailure::failed(format, error))?;
     announce(studio, console)
 }
@@ -91,14 +104,30 @@ fn announce(studio: Studio, console: &mut CommandOutput<'_>) -> Result<Studio, C
     Ok(studio)
 }
 
-/// Serves the studio of a tape, and prints its address. Charts are those of the recorded
-/// configuration; without it, all but their drawings is shown, and the reason is printed.
+/// Serves the studio of a tape, or of two, and prints its address.
 fn serve_tape(
     tape: &Path,
+    beside: Option<&Path>,
     listen: &ListenArgument,
     format: Format,
     console: &mut CommandOutput<'_>,
 ) -> Result<Studio, CommandFailure> {
+    let tape = open_tape(tape, format, console)?;
+    let settings = StudioSettings { listen: listen.listen, ..StudioSettings::default() };
+    let studio = match beside {
+        None => Studio::of_tape(tape, settings),
+        Some(other) => Studio::of_tapes(tape, open_tape(other, format, console)?, settings),
+    };
+    announce(studio.map_err(|error| CommandFailure::failed(format, error))?, console)
+}
+
+/// Reads a tape. Charts are those of the recorded configuration; without it, all but their drawings
+/// is shown, and the reason is printed.
+fn open_tape(
+    tape: &Path,
+    format: Format,
+    console: &mut CommandOutput<'_>,
+) -> Result<TapeRun, CommandFailure> {
     let recording = Recording::open(tape).map_err(failed(format))?;
     let charts = match recorded_charts(&recording, format) {
         Ok(charts) => charts,
@@ -114,9 +143,7 @@ fn serve_tape(
     };
     let name = tape.file_name().unwrap_or_default().to_string_lossy();
     let tape = TapeRun::new(&name, recording, &charts, scene());
-    let tape = tape.map_err(|error| CommandFailure::failed(format, error))?;
-    let studio = Studio::of_tape(tape, StudioSettings { listen: listen.listen, ..StudioSettings::default() });
-    announce(studio.map_err(|error| CommandFailure::failed(format, error))?, console)
+    tape.map_err(|error| CommandFailure::failed(format, error))
 }
 
 /// What this program draws from above.

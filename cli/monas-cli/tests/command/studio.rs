@@ -3,6 +3,8 @@
 use serde_json::Value;
 
 use crate::kit::{Answer, command, monas};
+#[cfg(unix)]
+use crate::running::{Running, in_folder};
 
 #[test]
 fn a_studio_prints_its_address_and_changes_no_result() {
@@ -136,6 +138,16 @@ fn another_guard_from_a_moment_on_gives_another_future_and_the_same_guard_the_sa
     assert_eq!((&difference["host"], &difference["topic"]), (&"blue-2".into(), &"soccer/motion".into()));
     assert_eq!((difference["time"].as_f64(), &difference["first"]["kind"]), (Some(7.8), &"KICK_LEFT".into()));
     assert_ne!(without["recorded"]["events"], without["what_if"]["events"]);
+    // a parameter of an activity takes effect, on the robots that are named
+    let slow = object(&["--set", "agent.Attacker.MotionController.walk_forward=0.05", "--host", "blue-3"]);
+    assert_eq!(
+        slow["changes"],
+        serde_json::json!(["blue-3: agent.Attacker.MotionController.walk_forward=0.05"])
+    );
+    let difference = &slow["difference"];
+    assert_eq!((&difference["host"], &difference["topic"]), (&"blue-3".into(), &"body/actuators".into()));
+    assert!(difference["first"]["walk_x"].as_f64() > difference["second"]["walk_x"].as_f64(), "{difference}");
+    assert!(difference["time"].as_f64().is_some_and(|time| (7.75..8.0).contains(&time)), "{difference}");
     let why = monas(&["why", other, "blue-2", "--transition", "CONDITION -> kickBall", "--at", "12"]);
     assert_eq!(why.code, Some(0), "{}", why.err);
 
@@ -146,6 +158,47 @@ fn another_guard_from_a_moment_on_gives_another_future_and_the_same_guard_the_sa
     refused(&["--guard", "CONDITION -> kickBall"], "is not `A -> B=[condition]`");
     refused(&["--guard", "CONDITION -> nowhere=[true]"], "there is no transition");
     refused(&["--set", "agent.Nobody.frequency=5"], "no robot has an agent `Nobody`");
+    refused(&["--set", "agent.Attacker.Nobody.speed=5"], "has no activity `Nobody`");
+    refused(&["--set", "agent.Attacker.Vision.speed=5"], "unknown parameter `speed`");
     refused(&["--set", "agent.Attacker.WalkTowardsBall.no_such=5"], "unknown parameter");
     refused(&[], "--set");
+}
+
+#[cfg(unix)]
+#[test]
+fn what_a_person_decides_as_the_referee_is_recorded_and_replayed() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let tape = folder.path().join("match.mcap");
+    let tape = tape.to_str().expect("a path in UTF-8");
+    let arguments = ["run", "config/match.xml", "--realtime", "--control", "called", "--record", tape];
+    let run = Running::start(folder.path(), &arguments, "control socket: ");
+    let call = |message: &str| {
+        let arguments = ["topic", "pub", "sim/referee", message, "--host", "field"];
+        let answer: Answer =
+            in_folder(folder.path(), &arguments).output().expect("the command starts").into();
+        assert_eq!(answer.code, Some(0), "{}", answer.err);
+    };
+    for message in
+        [r#"{"kind": "PLAY"}"#, r#"{"kind": "READY"}"#, r#"{"kind": "PENALIZE", "team": 1, "number": 2}"#]
+    {
+        call(message);
+    }
+    run.interrupt();
+    let incidents = monas(&["tape", "export", tape, "--topic", "sim/incident"]).out;
+    assert!(incidents.contains("refused call PLAY: play cannot follow initial"), "{incidents}");
+    assert!(incidents.contains("decided by a person"), "{incidents}");
+    let scores = monas(&["tape", "export", tape, "--topic", "sim/score"]).out;
+    assert!(scores.contains(r#""state":"READY""#), "{scores}");
+    let replay = monas(&["tape", "replay", tape, "--verify"]);
+    assert_eq!(replay.code, Some(0), "{}\n{}", replay.out, replay.err);
+}
+
+#[test]
+fn control_of_a_tape_or_without_a_studio_is_refused() {
+    let tape = monas(&["studio", "match.mcap", "--allow-control"]);
+    assert_eq!(tape.code, Some(2), "{}", tape.err);
+    assert!(tape.err.contains("a tape cannot be changed"), "{}", tape.err);
+    let run = monas(&["run", "config/match.xml", "--allow-control", "--for", "1s"]);
+    assert_eq!(run.code, Some(2), "{}", run.err);
+    assert!(run.err.contains("add --studio"), "{}", run.err);
 }

@@ -37,6 +37,7 @@ pub(super) fn announcement(ground: &SharedWorld, robot: usize) -> Option<Announc
     }
     Some(Announcement {
         phase: phase(said.state) as i32,
+        halted: said.halted,
         penalized: said.penalty.is_some(),
         penalty_left: said.penalty.map_or(0.0, |penalty| penalty.remaining),
         seconds_left: said.seconds_remaining,

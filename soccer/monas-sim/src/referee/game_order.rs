@@ -31,7 +31,7 @@ impl Referee {
     pub fn to_order(&self) -> GameOrder {
         GameOrder {
             state: self.state,
-            is_halted: self.order.as_ref().is_some_and(|order| order.is_halted),
+            is_halted: self.is_stopped || self.order.as_ref().is_some_and(|order| order.is_halted),
             half: self.half,
             seconds_remaining: self.seconds_remaining(),
             kick_off: self.kick_off,

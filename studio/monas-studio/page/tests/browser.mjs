@@ -45,7 +45,7 @@ export function start(program, args, folder = mkdtempSync(join(tmpdir(), 'monas-
     child.kill('SIGINT');
     await ended;
   };
-  return { folder, printed, stop, url: printed(/^studio: (http\S+)$/m).then((found) => found[1]) };
+  return { folder, pid: child.pid, printed, stop, url: printed(/^studio: (http\S+)$/m).then((found) => found[1]) };
 }
 
 /** With PAGE=dist, the page that was built last instead of the one in the program. */

@@ -2,7 +2,7 @@
 // written to tests/screenshots.
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
-import { mkdirSync, mkdtempSync } from 'node:fs';
+import { mkdirSync, mkdtempSync, readFileSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
@@ -81,6 +81,64 @@ const TESTS = {
   async 'the drawing is saved as SVG'({ page }) {
     const [download] = await Promise.all([page.waitForEvent('download'), page.locator('.chart button', { hasText: 'SVG' }).click()]);
     assert.match(download.suggestedFilename(), /^blue-3-Attacker\.svg$/);
+  },
+
+  async 'the drawing is saved as PNG, with two pixels for one'({ page }) {
+    const [download] = await Promise.all([page.waitForEvent('download'), page.locator('.chart button', { hasText: 'PNG' }).click()]);
+    assert.match(download.suggestedFilename(), /^blue-3-Attacker\.png$/);
+    const bytes = readFileSync(await download.path());
+    assert.equal(bytes.subarray(1, 4).toString(), 'PNG');
+    const size = await page.locator('.chart svg').getAttribute('viewBox');
+    const [, , width, height] = size.split(' ').map(Number);
+    assert.deepEqual([bytes.readUInt32BE(16), bytes.readUInt32BE(20)], [Math.ceil(width * 2), Math.ceil(height * 2)]);
+    const colours = await page.evaluate(async (text) => {
+      const image = new Image();
+      image.src = `data:image/png;base64,${text}`;
+      await image.decode();
+      const canvas = new OffscreenCanvas(image.width, image.height);
+      const context = canvas.getContext('2d');
+      context.drawImage(image, 0, 0);
+      const { data } = context.getImageData(0, 0, image.width, image.height);
+      return new Set(new Uint32Array(data.buffer)).size;
+    }, bytes.toString('base64'));
+    assert.ok(colours > 20, `${colours} colours: something is drawn`);
+  },
+
+  async 'composites that only enclose another are folded'({ page }) {
+    const picture = await page.evaluate(
+      () =>
+        new Promise((resolve) => {
+          const socket = new WebSocket(`ws://${location.host}/socket`);
+          const ask = () => socket.readyState === WebSocket.OPEN && socket.send(JSON.stringify({ type: 'picture', key: 'blue-2/Attacker/0' }));
+          const again = setInterval(ask, 500);
+          socket.onmessage = (event) => {
+            const message = JSON.parse(event.data);
+            if (message.type === 'picture' && message.picture) {
+              clearInterval(again);
+              socket.close();
+              resolve(message.picture);
+            }
+          };
+        }),
+    );
+    const { nodes } = picture;
+    const drawn = nodes.map((node, id) => (node.shape ? id : null)).filter((id) => id !== null);
+    const composites = (list) => list.filter((id) => ['OR', 'AND'].includes(nodes[id].kind));
+    const around = (id) => {
+      let parent = nodes[id].parent;
+      while (parent !== null && !nodes[parent].shape) {
+        parent = nodes[parent].parent;
+      }
+      return parent;
+    };
+    const all = composites(nodes.map((_, id) => id));
+    assert.ok(composites(drawn).length < all.length, `${composites(drawn).length} of ${all.length} are drawn`);
+    for (const id of composites(drawn).filter((id) => nodes[id].kind === 'OR')) {
+      const inside = drawn.filter((other) => around(other) === id);
+      const onlyWraps = inside.length > 0 && inside.every((other) => ['OR', 'AND', 'START', 'END'].includes(nodes[other].kind)) && composites(inside).length === 1;
+      const leads = picture.arrows.some((arrow) => inside.includes(arrow.source) && arrow.lines.length > 0);
+      assert.ok(!onlyWraps || leads, `${nodes[id].name} only encloses ${composites(inside).map((other) => nodes[other].name)}`);
+    }
   },
 
   async 'simulated time is held and goes on'({ page }) {
@@ -271,13 +329,24 @@ async function tape(browser) {
   assert.deepEqual(await log(), lines);
   // steps of the chosen chart, on and back
   const active = () => page.locator('.chart .node.active').evaluateAll((all) => all.map((one) => one.dataset.state).join());
+  const activeIs = (what, states, isSame) =>
+    until(
+      page,
+      what,
+      ([states, isSame]) => {
+        const now = [...document.querySelectorAll('.chart .node.active')].map((one) => one.dataset.state).join();
+        return (now === states) === isSame;
+      },
+      [states, isSame],
+    );
+  const atMoment = await active();
   await page.keyboard.press('.');
-  await page.waitForTimeout(300);
+  await activeIs('the next step', atMoment, false);
   const [atStep, stepTime] = [await active(), await time()];
   await page.keyboard.press('.');
+  await activeIs('the step after it', atStep, false);
   await page.keyboard.press(',');
-  await page.waitForTimeout(300);
-  assert.equal(await active(), atStep);
+  await activeIs('the step before', atStep, true);
   assert.equal(await time(), stepTime);
   // events
   await seek(1);
@@ -299,6 +368,73 @@ async function tape(browser) {
   assert.match(await page.locator('.reads li').first().getAttribute('title'), /number \d+ on soccer\/ball by Attacker/);
   await shot(page, 'tape');
   await whyNot(page, seek, time);
+  assert.deepEqual(faults, []);
+  await page.close();
+  await studio.stop();
+}
+
+/** An event is raised by its name in the chart of an agent in real time. */
+async function events(browser) {
+  const folder = mkdtempSync(join(tmpdir(), 'monas-lamp-'));
+  const role = 'Role: Lamp\nLiveness:\n  lamp = (Stand . LedHandler)~\nTransitions:\n  Stand -> LedHandler : whistle\n';
+  writeFileSync(join(folder, 'lamp.srm'), role);
+  writeFileSync(join(folder, 'lamp.xml'), '<agent><name>Lamp</name><statechart>lamp.srm</statechart></agent>\n');
+  const run = start(PROGRAM, ['run', join(folder, 'lamp.xml'), '--studio', '--allow-control', '--for', '300s']);
+  const { page, faults } = await open(browser, await run.url);
+  const form = page.getByRole('form', { name: 'Raise an event' });
+  await form.waitFor();
+  assert.deepEqual(await form.locator('option').evaluateAll((all) => all.map((one) => one.value)), ['whistle']);
+  await form.getByLabel('Event').fill('whistle');
+  await page.keyboard.press('Enter');
+  await form.locator('.outcome', { hasText: 'event whistle: done' }).waitFor();
+  await form.getByLabel('Event').fill('shout');
+  await page.keyboard.press('Enter');
+  await form.locator('.outcome', { hasText: /refused.*names the event `shout`/ }).waitFor();
+  await shot(page, 'event');
+  assert.deepEqual(faults, []);
+  await page.close();
+  await run.stop();
+}
+
+/** Two futures of a match on one timeline. */
+async function besides(browser) {
+  const folder = mkdtempSync(join(tmpdir(), 'monas-tapes-'));
+  const [file, other] = ['match.mcap', 'other.mcap'].map((name) => join(folder, name));
+  execFileSync(PROGRAM, ['run', MATCH, '--seed', '1', '--for', '20s', '--no-control', '--record', file], { stdio: 'ignore' });
+  const guard = ['--at', '7.75s', '--guard', 'CONDITION -> kickBall=[false]', '--host', 'blue-2'];
+  execFileSync(PROGRAM, ['tape', 'what-if', file, ...guard, '-o', other], { stdio: 'ignore' });
+  const studio = start(PROGRAM, ['studio', file, '--beside', other]);
+  const { page, faults } = await open(browser, await studio.url);
+  await until(page, 'two fields', () => document.querySelectorAll('.side svg').length === 2);
+  await page.locator('.play', { hasText: 'Hold' }).click();
+  const places = (side) => page.locator('.side').nth(side).locator('.body').evaluateAll((all) => all.map((one) => one.outerHTML.match(/translate\([^)]*\)/)?.[0]).join());
+  const seek = async (to) => {
+    await page.getByLabel('Moment').fill(String(to));
+    await until(page, `moment ${to}`, (to) => {
+      const [minutes, rest] = (document.querySelector('.time')?.textContent ?? '').split(':').map(Number);
+      return Math.abs(minutes * 60 + rest - to) < 0.06;
+    }, to);
+    await page.waitForTimeout(500);
+  };
+  await seek(7.5);
+  assert.match(await textOf(page, '.difference'), /First difference at 0:07\.8: soccer\/motion number \d+ by Attacker of blue-2/);
+  await until(page, 'robots on both', () => document.querySelectorAll('.body').length === 12);
+  assert.equal(await places(0), await places(1));
+  assert.equal(await page.locator('.differs').count(), 0);
+  await page.getByRole('button', { name: 'go there' }).click();
+  await until(page, 'the difference', () => document.querySelector('.time')?.textContent === '0:07.8');
+  await seek(8.5);
+  const row = page.locator('tr.choice', { hasText: 'blue-2' });
+  await row.getByText('≠').waitFor();
+  await row.click();
+  const list = (side) => page.locator('.list').nth(side).innerText();
+  assert.match(await list(0), /kickBall|Kick/);
+  assert.doesNotMatch((await list(1)).split('\n')[0], /Kick/);
+  await shot(page, 'beside');
+  await seek(15);
+  assert.notEqual(await places(0), await places(1));
+  await seek(7.5);
+  assert.equal(await places(0), await places(1), 'the same when reached backwards');
   assert.deepEqual(faults, []);
   await page.close();
   await studio.stop();
@@ -331,11 +467,150 @@ async function whyNot(page, seek, time) {
   await page.locator('.why button', { hasText: 'back to now' }).click();
 }
 
+/** A run that pages may change: agents, messages, the referee, events; and one that they may not. */
+async function steering(browser) {
+  const run = start(PROGRAM, ['run', MATCH, '--studio', '--allow-control', '--pace', '0.05', '--seed', '1', '--for', '600s']);
+  const { page, faults } = await open(browser, await run.url);
+  await until(page, 'six charts', () => document.querySelectorAll('.robots li').length === 6);
+  // the referee, by keyboard alone
+  await page.getByRole('button', { name: 'Ready', exact: true }).focus();
+  await page.keyboard.press('Enter');
+  await until(page, 'READY', () => /ready/.test(document.querySelector('.panel header')?.textContent ?? ''));
+  for (const [button, state] of [['Set', 'set'], ['Play', 'playing']]) {
+    await page.getByRole('button', { name: button, exact: true }).click();
+    await until(page, state, (state) => document.querySelector('.panel header')?.textContent?.includes(state), state);
+  }
+  await page.getByRole('button', { name: '1×' }).click();
+  await page.locator('.robots button', { hasText: 'blue-2' }).click();
+  await page.getByRole('button', { name: 'Penalize blue-2' }).click();
+  await until(page, 'a robot off the field', () => document.querySelectorAll('.body.out').length === 1);
+  await shot(page, 'referee');
+  await page.getByRole('button', { name: 'Return blue-2' }).click();
+  await until(page, 'all on the field', () => document.querySelectorAll('.body.out').length === 0);
+  await page.getByRole('button', { name: 'Stop', exact: true }).click();
+  await page.getByRole('button', { name: 'Resume', exact: true }).click();
+  // an agent is paused, stepped and resumed
+  await page.keyboard.press('2');
+  await page.locator('tr.choice', { hasText: 'blue-2' }).click();
+  const control = page.getByRole('region', { name: /Control Attacker of blue-2/ });
+  const state = () => page.locator('tr.choice', { hasText: 'blue-2' }).locator('td').nth(2).innerText();
+  const outcome = (pattern) => control.locator('.outcome', { hasText: pattern }).waitFor();
+  const button = (name) => control.getByRole('button', { name, exact: true });
+  const steps = () => page.locator('tr.choice', { hasText: 'blue-2' }).locator('td').nth(6).innerText();
+  await button('Pause').click();
+  await outcome(/pause: done/);
+  await page.locator('tr.choice', { hasText: 'blue-2' }).getByText('pauses').waitFor();
+  await page.waitForTimeout(1500);
+  const before = await steps();
+  await page.waitForTimeout(1500);
+  assert.equal(await steps(), before, 'a paused agent makes no steps');
+  await button('Step').click();
+  await outcome(/step: done/);
+  await shot(page, 'control');
+  await button('Resume').click();
+  await outcome(/resume: done/);
+  await page.locator('tr.choice', { hasText: 'blue-2' }).getByText('runs').waitFor();
+  assert.equal(await state(), 'runs');
+  await control.getByLabel('What is set').fill('WalkTowardsBall.nonsense');
+  await control.getByLabel('Value', { exact: true }).fill('1');
+  await control.getByRole('button', { name: 'Set', exact: true }).click();
+  await outcome(/refused.*nonsense/);
+  // a model of its own, and one that is none
+  const model = (name, text) => control.getByLabel('File of the model').setInputFiles({ name, mimeType: 'text/plain', buffer: Buffer.from(text) });
+  await model('broken.srm', 'Liveness:\n  x = (');
+  await control.getByRole('button', { name: 'Replace', exact: true }).click();
+  await outcome(/broken\.srm:\d+:\d+/);
+  const attacker = readFileSync(new URL('../../../../models/attacker.srm', import.meta.url), 'utf8');
+  await model('attacker.srm', attacker);
+  await control.getByRole('button', { name: 'Replace', exact: true }).click();
+  await outcome(/swap to attacker\.srm: done/);
+  // a parameter of an activity, whose name is completed
+  assert.equal(await control.locator('option[value="MotionController."]').count(), 1);
+  await control.getByLabel('What is set').fill('MotionController.walk_forward');
+  await control.getByLabel('Value', { exact: true }).fill('0.2');
+  await control.getByRole('button', { name: 'Set', exact: true }).click();
+  await outcome(/walk_forward=0\.2: done/);
+  // a message by form
+  await page.locator('h2').first().click();
+  await page.keyboard.press('3');
+  await page.getByLabel('Filter topics').fill('soccer/ball');
+  await page.locator('tr.choice', { hasText: 'red-1' }).click();
+  const form = page.getByRole('form', { name: 'Publish' });
+  await form.getByLabel('distance').fill('far');
+  await form.getByRole('button', { name: /Publish on red-1/ }).click();
+  await form.locator('.outcome', { hasText: 'distance is no number' }).waitFor();
+  await page.getByRole('button', { name: 'Close' }).click();
+  await page.getByLabel('Filter topics').fill('sim/referee');
+  await page.locator('tr.choice', { hasText: 'sim/referee' }).filter({ hasText: 'field' }).click();
+  await form.getByLabel('kind').selectOption('STOP');
+  await form.getByLabel('number').fill('3');
+  await form.getByRole('button', { name: /Publish on field/ }).click();
+  await form.locator('.outcome', { hasText: 'publish: done' }).waitFor();
+  await until(page, 'the message in the tree', () => /kind\s*"STOP"/.test(document.querySelector('.message')?.textContent ?? ''));
+  await until(page, 'its number', () => /number\s*3/.test(document.querySelector('.message')?.textContent ?? ''));
+  await shot(page, 'publish');
+  // held simulated time takes requests too
+  await page.locator('h2').first().click();
+  await page.keyboard.press(' ');
+  await until(page, 'the run is held', () => document.querySelector('.link')?.textContent === 'Held');
+  await page.waitForTimeout(3000);
+  await form.getByLabel('kind').selectOption('RESUME');
+  await form.getByRole('button', { name: /Publish on field/ }).click();
+  await until(page, 'a message while held', () => /kind\s*"RESUME"/.test(document.querySelector('.message')?.textContent ?? ''));
+  assert.equal(await textOf(page, '.link'), 'Held');
+  // looking back there are no controls
+  await page.locator('h2').first().click();
+  await page.keyboard.press(' ');
+  await page.getByLabel('Moment').fill('3');
+  await until(page, 'a moment before', () => document.querySelector('.link')?.textContent === 'Looking back');
+  assert.equal(await page.getByRole('form', { name: 'Publish' }).count(), 0);
+  assert.deepEqual(faults, []);
+  await page.close();
+  await run.stop();
+
+  const plain = start(PROGRAM, ['run', MATCH, '--studio', '--seed', '1', '--for', '600s']);
+  const { page: looking } = await open(browser, await plain.url);
+  await until(looking, 'six charts', () => document.querySelectorAll('.robots li').length === 6);
+  for (const [key, what] of [['1', 'Referee'], ['2', /Control/]]) {
+    await looking.keyboard.press(key);
+    if (key === '2') {
+      await looking.locator('tr.choice', { hasText: 'blue-2' }).click();
+      await looking.locator('.inner').waitFor();
+    }
+    assert.equal(await looking.getByRole('region', { name: what }).count(), 0);
+  }
+  assert.equal(await looking.getByText('may control').count(), 0);
+  const reply = await looking.evaluate(
+    () =>
+      new Promise((resolve) => {
+        const socket = new WebSocket(`ws://${location.host}/socket`);
+        socket.onopen = () => socket.send(JSON.stringify({ type: 'change', id: 5, host: 'blue-2', agent: 'Attacker', action: 'pause' }));
+        socket.onmessage = (event) => {
+          const message = JSON.parse(event.data);
+          if (message.type === 'reply') {
+            resolve(message);
+          }
+        };
+      }),
+  );
+  assert.equal(reply.done, false);
+  assert.match(reply.reason, /--allow-control/);
+  await looking.waitForTimeout(1500);
+  assert.equal(await looking.locator('tr.choice', { hasText: 'blue-2' }).locator('td').nth(2).innerText(), 'runs');
+  await looking.close();
+  await plain.stop();
+}
+
 mkdirSync(SCREENSHOTS, { recursive: true });
 const browser = await launch();
+/** With ONLY=words, only the parts with these words in their names. */
+const ONLY = process.env.ONLY ?? '';
 const run = start(PROGRAM, ['run', MATCH, '--studio', '--seed', '1', '--for', '600s']);
 let failed = 0;
 const check = async (name, test) => {
+  if (!name.includes(ONLY)) {
+    return;
+  }
   try {
     await test();
     console.log(`ok      ${name}`);
@@ -355,6 +630,9 @@ try {
   await page.close();
   await check('a studio beside runs follows them', () => beside(browser));
   await check('a tape is played, searched and stepped', () => tape(browser));
+  await check('two tapes are shown on one timeline', () => besides(browser));
+  await check('an event is raised by its name', () => events(browser));
+  await check('a run is steered only with permission', () => steering(browser));
 } finally {
   await browser.close();
   await run.stop();

@@ -2,6 +2,8 @@
 
 #![allow(clippy::panic, clippy::unwrap_used)] // a test may fail
 
+#[cfg(unix)]
+mod control;
 mod kit;
 #[cfg(unix)]
 mod run;

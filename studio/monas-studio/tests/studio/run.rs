@@ -410,6 +410,70 @@ fn clients_of_the_foxglove_protocol_list_topics_and_decode_their_messages() {
     }
 }
 
+/// The first frame of a subscription that is decoded to what is looked for.
+fn decoded<T>(
+    client: &mut FoxgloveClient,
+    channel: &Value,
+    id: u32,
+    mut find: impl FnMut(&Value) -> Option<T>,
+) -> T {
+    let pool = monas_tape::descriptor_pool(&from_base64(channel["schema"].as_str().unwrap())).unwrap();
+    let message_type = pool.get_message_by_name(channel["schemaName"].as_str().unwrap()).unwrap();
+    client.send(&json!({"op": "subscribe", "subscriptions": [{"id": id, "channelId": channel["id"]}]}));
+    loop {
+        if let tungstenite::Message::Binary(frame) = client.0.read().unwrap()
+            && frame[1..5] == id.to_le_bytes()
+            && let Some(found) = find(&monas_studio::message_json(&message_type, &frame[13..]).unwrap())
+        {
+            return found;
+        }
+    }
+}
+
+#[test]
+fn clients_of_the_foxglove_protocol_get_the_scene_and_the_states_of_charts() {
+    let run = Run::start();
+    run.note("seen from above");
+    let studio = studio(&run.socket(), "127.0.0.1:0", None);
+    // a page that has the chart: then it is a channel
+    let mut viewer = Viewer::open(&studio).unwrap();
+    viewer.wait(|message| message["charts"].as_array()?.iter().find(|chart| chart["drawing"] == 1).cloned());
+    let mut client = FoxgloveClient::open(&studio, "foxglove.sdk.v1", None).unwrap();
+    let channels = client.object("advertise")["channels"].clone();
+    let channel =
+        |topic: &str| channels.as_array().unwrap().iter().find(|one| one["topic"] == topic).unwrap();
+    let scene = channel("/scene");
+    assert_eq!(scene["schemaName"], "foxglove.SceneUpdate");
+    let entities = decoded(&mut client, scene, 3, |update| update["entities"].as_array().cloned());
+    assert_eq!(
+        (&entities[0]["id"], &entities[1]["id"]),
+        (&json!("body 0 seen from above"), &json!("ground"))
+    );
+    assert_eq!(entities[0]["texts"][0]["text"], "seen from above");
+    assert_eq!(entities[0]["frame_id"], "world");
+
+    let states = channel("/robot/chart/Lamp");
+    assert_eq!(states["schemaName"], "monas.studio.ActiveState");
+    let mut seen = Vec::new();
+    let mut publisher = run.hub.publisher(records::CHART, "Lamp").unwrap();
+    let step = |exit: u32, entry: u32, time: u64| records::Chart {
+        time,
+        exits: vec![exit],
+        entries: vec![entry],
+        ..Default::default()
+    };
+    decoded(&mut client, states, 4, |message| {
+        seen.push(message["state"].as_str().unwrap().to_owned());
+        if seen.len() == 1 {
+            // Both steps are sent, although the second follows at once.
+            publisher.publish(step(2, 3, 1), Timestamp::from_nanos(2_000_000_000));
+            publisher.publish(step(3, 2, 2), Timestamp::from_nanos(2_000_000_001));
+        }
+        (seen.len() == 3).then_some(())
+    });
+    assert_eq!(seen, ["off", "on", "off"]);
+}
+
 #[test]
 fn pages_of_others_need_an_allowed_origin() {
     let run = Run::start();

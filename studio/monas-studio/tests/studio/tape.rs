@@ -13,6 +13,11 @@ use crate::kit::{NOTE, Notes, Viewer, chart, lamp};
 
 /// The lamp is switched at each second from 1 to `steps`, with a note before each.
 fn record(path: &Path, steps: u32) -> Recording {
+    record_from(path, steps, steps + 1)
+}
+
+/// The same with other notes from a number on.
+fn record_from(path: &Path, steps: u32, others: u32) -> Recording {
     let tape = Tape::create(path).unwrap();
     let hub = Hub::with_linked_topics("robot").unwrap();
     hub.observe(Box::new(tape.clone()));
@@ -20,7 +25,13 @@ fn record(path: &Path, steps: u32) -> Recording {
     let mut charts = hub.publisher(records::CHART, "Lamp").unwrap();
     for number in 1..=steps {
         let time = Timestamp::from_nanos(u64::from(number) * 1_000_000_000);
-        notes.publish(Log { message: format!("note {number}"), ..Log::default() }, time);
+        notes.publish(
+            Log {
+                message: format!("{} {number}", if number < others { "note" } else { "other" }),
+                ..Log::default()
+            },
+            time,
+        );
         let (exits, entries) = if number % 2 == 1 { (vec![2], vec![3]) } else { (vec![3], vec![2]) };
         charts.publish(records::Chart { exits, entries, ..records::Chart::default() }, time);
     }
@@ -43,6 +54,65 @@ fn open(steps: u32) -> (Studio, Viewer, Value) {
     viewer.send(json!({"type": "pace", "factor": 0}));
     let tape = viewer.wait(|message| Some(message["tape"].clone()).filter(|tape| tape["factor"] == 0.0));
     (studio, viewer, tape)
+}
+
+#[test]
+fn two_tapes_share_a_timeline_with_their_first_difference() {
+    let folder = tempfile::tempdir().unwrap();
+    let (host, agent, model) = ("robot".into(), "Lamp".into(), "lamp".into());
+    let charts = [TapeChart { host, agent, chart: 0, model, statechart: lamp() }];
+    let open = |name: &str, steps: u32| {
+        let recording = record(&folder.path().join(name), steps);
+        TapeRun::new(name, recording, &charts, Some(Arc::new(Notes))).unwrap()
+    };
+    // the second has no note at 4 s and later
+    let (tape, other) = (open("a.mcap", 6), open("b.mcap", 3));
+    let listen = Some("127.0.0.1:0".parse().unwrap());
+    let settings = StudioSettings { listen, ..StudioSettings::default() };
+    let same = Studio::of_tapes(tape.clone(), tape.clone(), settings.clone()).unwrap();
+    let mut viewer = Viewer::open(&same).unwrap();
+    let kinds = |facts: &Value| -> Vec<String> {
+        let events = facts["events"].as_array().unwrap().iter();
+        events.map(|event| event["kind"].as_str().unwrap().to_owned()).collect()
+    };
+    let facts = viewer.wait(|message| message.get("tape").cloned());
+    assert!(!kinds(&facts).contains(&"first difference".to_owned()), "{facts}");
+
+    let shorter = open("c.mcap", 2);
+    let parted = TapeRun::new(
+        "d.mcap",
+        record_from(&folder.path().join("d.mcap"), 6, 4),
+        &charts,
+        Some(Arc::new(Notes)),
+    );
+    let studio = Studio::of_tapes(tape, parted.unwrap(), settings.clone()).unwrap();
+    let mut viewer = Viewer::open(&studio).unwrap();
+    viewer.send(json!({"type": "pace", "factor": 0}));
+    let facts = viewer.wait(|message| Some(message["tape"].clone()).filter(|tape| tape["factor"] == 0.0));
+    let difference =
+        facts["events"].as_array().unwrap().iter().find(|event| event["kind"] == "first difference");
+    assert_eq!(difference.unwrap()["t"], 4.0);
+    for (time, note, beside) in
+        [(5.5, "note 5", "other 5"), (3.5, "note 3", "note 3"), (4.5, "note 4", "other 4")]
+    {
+        viewer.send(json!({"type": "seek", "seconds": time}));
+        let label = |message: &Value| message["scene"]["bodies"][0]["label"].as_str().map(str::to_owned);
+        let (mut seen, mut seen_beside) = (None, None);
+        viewer.wait(|message| {
+            seen = label(message).or(seen.take());
+            seen_beside = label(&message["beside"]).or(seen_beside.take());
+            (message["now"] == time).then_some(())
+        });
+        assert_eq!((seen.as_deref(), seen_beside.as_deref()), (Some(note), Some(beside)), "at {time} s");
+    }
+    viewer.send(json!({"type": "picture", "key": "robot/Lamp/0", "beside": true}));
+    let picture = viewer.wait(|message| (message["type"] == "picture").then(|| message.clone()));
+    assert_eq!((&picture["beside"], &picture["picture"]["name"]), (&json!(true), &json!("lamp")));
+    // one that ends earlier stays at its end
+    let studio = Studio::of_tapes(other, shorter, settings).unwrap();
+    let mut viewer = Viewer::open(&studio).unwrap();
+    viewer.send(json!({"type": "seek", "seconds": 3.0}));
+    viewer.wait(|message| (message["beside"]["now"] == 3.0).then_some(()));
 }
 
 /// What is seen at a time: the note, and the active states.

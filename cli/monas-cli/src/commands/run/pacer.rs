@@ -6,6 +6,9 @@ use monas_studio::Pace;
 
 use crate::terminal::{Interrupt, WallClock};
 
+/// The longest wait before a run looks after requests.
+const PATIENCE: Duration = Duration::from_millis(50);
+
 /// Keeps simulated time from running ahead of a pace, which may change meanwhile.
 pub(super) struct Pacer {
     clock: WallClock,
@@ -22,8 +25,10 @@ impl Pacer {
         Pacer { clock, pace, factor, anchor: (clock.elapsed(), Duration::ZERO) }
     }
 
-    /// Waits until a simulated time may be passed, or until an interrupt.
-    pub(super) fn wait(&mut self, simulated: Duration, interrupt: &Interrupt) {
+    /// Waits until a simulated time may be passed, or until an interrupt, but no longer than
+    /// [`PATIENCE`]. Returns whether the wait is over: a run that is held still takes requests.
+    pub(super) fn wait(&mut self, simulated: Duration, interrupt: &Interrupt) -> bool {
+        let patience = self.clock.elapsed().saturating_add(PATIENCE);
         loop {
             let factor = self.pace.factor();
             if factor != self.factor {
@@ -31,14 +36,17 @@ impl Pacer {
                 self.anchor = (self.clock.elapsed(), simulated);
             }
             if factor.is_infinite() {
-                return;
+                return true;
             }
             let pace = &self.pace;
-            self.clock.wait_until_or(due(self.anchor, simulated, factor), || {
-                interrupt.is_requested() || pace.factor() != factor
-            });
-            if pace.factor() == factor || interrupt.is_requested() {
-                return;
+            let due = due(self.anchor, simulated, factor);
+            self.clock
+                .wait_until_or(due.min(patience), || interrupt.is_requested() || pace.factor() != factor);
+            if interrupt.is_requested() {
+                return true;
+            }
+            if pace.factor() == factor {
+                return due <= patience;
             }
         }
     }

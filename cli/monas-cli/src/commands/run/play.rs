@@ -129,8 +129,10 @@ fn play(
         alarm.check(handle.now());
         each_look();
         scoreboard.show(&running)?;
-        if let Some(pacer) = &mut pacer {
-            pacer.wait(running.now(), interrupt);
+        while pacer.as_mut().is_some_and(|pacer| !pacer.wait(running.now(), interrupt)) {
+            // Requests are handled between two steps: while time is held, between no two.
+            let now = running.now();
+            running = running.advance_until_cancelled(now, || interrupt.is_requested()).map_err(failed)?;
         }
     }
     alarm.check(handle.now());

@@ -6,13 +6,15 @@ use std::f64::consts::PI;
 use monas_robot::{Posture, Sensors};
 use monas_sim::messages::Incident;
 use monas_studio::{
-    Banner, Belief, Body, Ground, GroundMark, Scene, SceneEvent, SceneMessages, SceneObject, ScenePicture,
+    Banner, Belief, Body, Ground, GroundMark, Scene, SceneAction, SceneEvent, SceneMessages, SceneObject,
+    ScenePicture,
 };
 use prost::Message;
-use serde_json::Value;
+use serde_json::{Value, json};
 
 const TRUTH: &str = "sim/truth";
 const SCORE: &str = "sim/score";
+const REFEREE: &str = "sim/referee";
 const INCIDENT: &str = "sim/incident";
 const SENSORS: &str = "body/sensors";
 const HOST: &str = "monas/host";
@@ -58,6 +60,11 @@ impl Scene for SoccerField {
             objects: truth.and_then(ball).into_iter().collect(),
             beliefs: messages.all(POSE).flat_map(|(host, pose)| beliefs(host, pose, messages)).collect(),
             banner: messages.all(SCORE).next().map(|(_, score)| banner(score, messages)),
+            actions: messages
+                .all(SCORE)
+                .next()
+                .map(|(host, score)| calls(host, score, messages))
+                .unwrap_or_default(),
         }
     }
 }
@@ -163,10 +170,42 @@ fn banner(score: &Value, messages: &SceneMessages<'_>) -> Banner {
     Banner { groups: teams.map(group).collect(), text }
 }
 
+/// What a person can decide as the referee, on the host that has the field.
+fn calls(host: &str, score: &Value, messages: &SceneMessages<'_>) -> Vec<SceneAction> {
+    let call = |label: &str, about: Option<&str>, message: Value| SceneAction {
+        label: label.to_owned(),
+        about: about.map(str::to_owned),
+        host: host.to_owned(),
+        topic: REFEREE.to_owned(),
+        message,
+    };
+    let state = score["state"].as_str().unwrap_or_default();
+    let all: &[(&str, &str)] = match state {
+        "INITIAL" => &[("Ready", "READY")],
+        "READY" => &[("Set", "SET"), ("End half", "END_HALF")],
+        "SET" => &[("Play", "PLAY"), ("End half", "END_HALF")],
+        "PLAYING" => &[("Kick-off", "READY"), ("Drop ball", "DROP_BALL"), ("End half", "END_HALF")],
+        _ => return Vec::new(),
+    };
+    let stop = if score["stopped"] == true { ("Resume", "RESUME") } else { ("Stop", "STOP") };
+    let mut actions: Vec<SceneAction> =
+        [stop].iter().chain(all).map(|(label, kind)| call(label, None, json!({"kind": kind}))).collect();
+    for (robot_host, robot) in messages.all(HOST) {
+        let (Some(team), Some(number)) = (robot["team"].as_u64(), robot["number"].as_u64()) else { continue };
+        let truth = messages.all(TRUTH).next().map(|(_, truth)| truth);
+        let is_it =
+            |robot: &&Value| robot["team"].as_u64() == Some(team) && robot["number"].as_u64() == Some(number);
+        let Some(body) = truth.and_then(|truth| robots(truth).find(is_it)) else { continue };
+        let (label, kind) =
+            if body["on_field"] == true { ("Penalize", "PENALIZE") } else { ("Return", "RETURN") };
+        let label = format!("{label} {robot_host}");
+        actions.push(call(&label, Some(robot_host), json!({"kind": kind, "team": team, "number": number})));
+    }
+    actions
+}
+
 #[cfg(test)]
 mod tests {
-    use serde_json::json;
-
     use super::*;
 
     fn draw(messages: &[(&str, &str, Value)]) -> ScenePicture {

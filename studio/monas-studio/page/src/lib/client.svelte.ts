@@ -8,9 +8,12 @@ import type {
   Frame,
   Ground,
   LogLine,
+  Json,
   Picture,
+  Reply,
   RunFacts,
   Sample,
+  SceneAction,
   SceneNews,
   ServerMessage,
   TapeFacts,
@@ -65,6 +68,7 @@ export class StudioClient {
   pictures = $state.raw<Map<string, KnownPicture>>(new Map());
   ground = $state.raw<Ground | null>(null);
   scene = $state.raw<SceneNews | null>(null);
+  actions = $state.raw<SceneAction[]>([]);
   sample = $state.raw<Sample | null>(null);
   /** The speed of simulated time, null if it is unlimited; undefined if it is not set here. */
   pace = $state.raw<number | null | undefined>(undefined);
@@ -75,12 +79,18 @@ export class StudioClient {
   /** The same of a transition. */
   whyTransition = $state.raw<{ key: string; transition: number; why: TransitionExplanation } | null>(null);
 
+  /** The tape beside: it gets its messages from here. */
+  beside = $state.raw<StudioClient | null>(null);
+
+  #parent: StudioClient | null = null;
   #socket: WebSocket | null = null;
   #retry = FIRST_RETRY;
   #watched: { host: string; topic: string } | null = null;
   /** The drawings that were asked for, by chart. */
   #asked = new Map<string, number>();
   #tableTime = 0;
+  #requests = new Map<number, (reply: Reply) => void>();
+  #lastRequest = 0;
 
   connect(): void {
     const scheme = location.protocol === 'https:' ? 'wss' : 'ws';
@@ -101,6 +111,8 @@ export class StudioClient {
         return;
       }
       this.connection = 'closed';
+      this.#requests.forEach((resolve) => resolve({ done: false, reason: 'the connection was lost; whether it was done is not known' }));
+      this.#requests.clear();
       // A connection that cannot be opened afterwards does not take back what was said.
       this.hasEnded ||= event.code === GOING_AWAY;
       setTimeout(() => this.connect(), this.#retry);
@@ -133,6 +145,38 @@ export class StudioClient {
     this.#send({ type: 'live' });
   }
 
+  /** Whether this page may change the run: not while it looks back. */
+  get mayControl(): boolean {
+    return this.run?.control === true && this.run.link === 'live' && this.connection === 'open' && this.tape?.live !== false;
+  }
+
+  /** Changes an agent of a host, as `monas agent` and `monas chart raise` do. */
+  change(host: string, agent: string, action: string, more: Record<string, Json> = {}): Promise<Reply> {
+    return this.#request({ type: 'change', host, agent, action, ...more });
+  }
+
+  /** Publishes a message on a topic of a host. */
+  publish(host: string, topic: string, message: Json): Promise<Reply> {
+    return this.#request({ type: 'publish', host, topic, message });
+  }
+
+  /** The fields of the messages of a topic. */
+  form(topic: string): Promise<Reply> {
+    return this.#request({ type: 'form', topic });
+  }
+
+  #request(message: object): Promise<Reply> {
+    this.#lastRequest += 1;
+    const id = this.#lastRequest;
+    if (this.#socket?.readyState !== WebSocket.OPEN) {
+      return Promise.resolve({ done: false, reason: 'the studio does not answer' });
+    }
+    return new Promise((resolve) => {
+      this.#requests.set(id, resolve);
+      this.#send({ id, ...message });
+    });
+  }
+
   /** Whether a recording is shown, which has all messages. */
   get isTape(): boolean {
     return this.tape !== null && this.tape.live === undefined;
@@ -158,6 +202,10 @@ export class StudioClient {
   }
 
   #send(message: object): void {
+    if (this.#parent) {
+      this.#parent.#send({ ...message, beside: true });
+      return;
+    }
     if (this.#socket?.readyState === WebSocket.OPEN) {
       this.#socket.send(JSON.stringify(message));
     }
@@ -178,6 +226,10 @@ export class StudioClient {
         this.#takeFrame(message);
         break;
       case 'picture': {
+        if (message.beside && this.beside) {
+          this.beside.#take({ ...message, beside: false });
+          break;
+        }
         const chart = this.charts.get(message.key);
         if (chart && message.picture) {
           const pictures = new Map(this.pictures);
@@ -195,6 +247,12 @@ export class StudioClient {
         break;
       case 'why transition':
         this.whyTransition = message;
+        break;
+      case 'reply':
+        if (message.id !== null) {
+          this.#requests.get(message.id)?.(message);
+          this.#requests.delete(message.id);
+        }
         break;
       case 'refused':
         this.sample = message;
@@ -236,10 +294,18 @@ export class StudioClient {
     }
     if (frame.scene) {
       this.ground = frame.scene.ground ?? this.ground;
+      this.actions = frame.scene.actions ?? this.actions;
       this.scene = frame.scene;
     }
     if (frame.sample) {
       this.sample = frame.sample;
+    }
+    if (frame.beside) {
+      if (!this.beside) {
+        this.beside = new StudioClient();
+        this.beside.#parent = this;
+      }
+      this.beside.#takeFrame(frame.beside);
     }
   }
 
@@ -262,7 +328,9 @@ export class StudioClient {
     this.agents = [];
     this.topics = [];
     this.log = [];
+    this.beside = null;
     this.scene = null;
+    this.actions = [];
     this.tape = null;
     this.why = null;
     this.whyTransition = null;

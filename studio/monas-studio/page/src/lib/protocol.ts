@@ -9,6 +9,8 @@ export interface RunFacts {
   simulated: boolean;
   hosts: string[];
   scene: boolean;
+  /** Whether pages may change the run. */
+  control?: boolean;
 }
 
 export interface ChartStep {
@@ -70,6 +72,8 @@ export interface Picture {
   nodes: PictureNode[];
   arrows: PictureArrow[];
   transitions: { source: number; target: number; text: string }[];
+  /** The names in triggers. */
+  events: string[];
 }
 
 export type GroundMark =
@@ -112,8 +116,19 @@ export interface Belief {
   confidence: number;
 }
 
+/** A message that is published at the press of a button. */
+export interface SceneAction {
+  label: string;
+  /** The host that it is about; none for one about all. */
+  about: string | null;
+  host: string;
+  topic: string;
+  message: Json;
+}
+
 export interface SceneNews {
   ground?: Ground;
+  actions?: SceneAction[];
   bodies: Body[];
   objects: SceneObject[];
   beliefs: Belief[];
@@ -141,7 +156,16 @@ export interface AgentRow {
   missed: number;
   steps: number;
   time: Times | null;
-  activities: { name: string; state: string; calls: number; failures: number; time: Times | null }[];
+  charts: { model: string; state: string }[];
+  activities: {
+    name: string;
+    /** Empty in a list. */
+    state: string;
+    parameters?: Record<string, string>;
+    calls: number;
+    failures: number;
+    time: Times | null;
+  }[];
 }
 
 export interface TopicRow {
@@ -254,12 +278,46 @@ export interface Frame {
   /** The moment is not a later one: what came since holds no more. */
   elsewhere?: boolean;
   tape?: TapeFacts;
+  /** The same moment of the tape beside. */
+  beside?: Frame;
   pace?: { is_set_here: boolean; factor: number | null };
+}
+
+/** A diagnostic about a change. */
+export interface Finding {
+  code: string;
+  error: boolean;
+  text: string;
+  hint: string;
+  file: string;
+  line: number;
+  column: number;
+}
+
+/** A field of the messages of a topic. */
+export interface FormField {
+  name: string;
+  kind: 'number' | 'integer' | 'boolean' | 'text' | 'enum' | 'json';
+  type: string;
+  values: string[] | null;
+  default: Json;
+}
+
+/** The reply to a request that changes the run. */
+export interface Reply {
+  done: boolean;
+  reason?: string | null;
+  /** The cycle of the agent after which it was changed. */
+  cycle?: number;
+  findings?: Finding[];
+  message_type?: string;
+  fields?: FormField[];
 }
 
 export type ServerMessage =
   | Frame
-  | { type: 'picture'; key: string; picture: Picture | null }
+  | ({ type: 'reply'; id: number | null } & Reply)
+  | { type: 'picture'; key: string; beside?: boolean; picture: Picture | null }
   | { type: 'why'; key: string; node: number; why: Explanation }
   | { type: 'why transition'; key: string; transition: number; why: TransitionExplanation }
   | { type: 'refused'; host: string; topic: string; reason: string };

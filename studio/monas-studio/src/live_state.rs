@@ -1,0 +1,41 @@
+//! What all viewers of a run share.
+
+use std::path::PathBuf;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use crate::pace::Pace;
+use crate::run_ring::RunRing;
+use crate::run_view::RunView;
+use crate::scene::Scene;
+
+/// A run as it is known to all of its viewers.
+pub(crate) struct LiveState {
+    pub(crate) socket: PathBuf,
+    pub(crate) scene: Option<Arc<dyn Scene>>,
+    pub(crate) pace: Option<Pace>,
+    /// Whether viewers may change the run.
+    pub(crate) allows_control: bool,
+    view: Mutex<RunView>,
+    /// What the run was before. It is locked after the view.
+    ring: Mutex<RunRing>,
+}
+
+impl LiveState {
+    pub(crate) fn new(
+        socket: PathBuf,
+        scene: Option<Arc<dyn Scene>>,
+        pace: Option<Pace>,
+        allows_control: bool,
+    ) -> LiveState {
+        let (view, ring) = (Mutex::default(), Mutex::default());
+        LiveState { socket, scene, pace, allows_control, view, ring }
+    }
+
+    pub(crate) fn view(&self) -> MutexGuard<'_, RunView> {
+        self.view.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    pub(crate) fn ring(&self) -> MutexGuard<'_, RunRing> {
+        self.ring.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
