@@ -50,7 +50,8 @@ pub struct Source {
     pub text: String,
     /// The first byte of each line, determined once: a text may have a finding in every line.
     line_starts: OnceLock<Box<[usize]>>,
-    /// The number of characters before each block of [`BLOCK`] bytes: a line may have many findings.
+    /// The number of characters before each block of [`BLOCK`] bytes: one line may have many
+    /// findings.
     characters: OnceLock<Box<[usize]>>,
 }
 
@@ -237,7 +238,7 @@ impl fmt::Display for Diagnostic {
 }
 
 /// Suggestions for many unknown names of one text. Each is compared with all candidates, so that
-/// the effort would grow with the square of the text: after [`COMPARISONS`] comparisons there are no
+/// the effort would grow with the square of the text: after a number of comparisons there are no
 /// more suggestions.
 #[derive(Clone, Debug)]
 pub struct Suggestions {

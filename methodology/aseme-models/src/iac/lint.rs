@@ -37,8 +37,8 @@ fn roots(chart: &Iac, file: Span) -> Vec<Diagnostic> {
     found
 }
 
-/// Checks the labels. A label that continues those before it, or that of its parent, is not reported
-/// if these are wrong: they are.
+/// Checks the labels. A label that continues those before it, or that of its parent, is not
+/// reported if these are wrong: they are.
 fn labels(chart: &Iac) -> Vec<Diagnostic> {
     let usual = chart.labels();
     // By node: the number of the child that comes next.

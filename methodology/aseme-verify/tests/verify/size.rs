@@ -85,7 +85,7 @@ fn entries_for_states_that_do_not_exist_are_each_reported() {
 }
 
 #[test]
-fn states_that_are_named_alike_are_told_apart() {
+fn states_of_the_same_name_get_numbers() {
     let report = checked("twins.srm", format!("Role: r\nLiveness:\nr = {}\n", vec!["a"; STATES].join(" . ")));
     assert!(!report.is_unreadable());
 }
