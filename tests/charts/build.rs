@@ -11,7 +11,7 @@ use std::path::PathBuf;
 use aseme_codegen::generate::{RustBindings, generate};
 use yase::StructureRules;
 use yase_reference::random::Case;
-use yase_reference::world::{TOPICS, vocabulary};
+use yase_reference::test_host::{TOPICS, vocabulary};
 
 /// The default range.
 const NUMBERS: Range<u64> = 0..200;
@@ -24,7 +24,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         vocabulary: vocabulary(),
         messages: TOPICS
             .iter()
-            .map(|name| ((*name).into(), "yase_reference::world::Number".into()))
+            .map(|name| ((*name).into(), "yase_reference::test_host::Number".into()))
             .collect(),
         ..RustBindings::default()
     };

@@ -4,6 +4,7 @@
 //! diagnostic has a position as a byte [`Span`] and, once [attached](Diagnostic::in_source), the
 //! text and the name of the file, from which line, column and the underlined text are derived.
 
+use std::cell::Cell;
 use std::fmt;
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
@@ -49,12 +50,23 @@ pub struct Source {
     pub text: String,
     /// The first byte of each line, determined once: a text may have a finding in every line.
     line_starts: OnceLock<Box<[usize]>>,
+    /// The number of characters before each block of [`BLOCK`] bytes: one line may have many
+    /// findings.
+    characters: OnceLock<Box<[usize]>>,
 }
+
+/// Characters are counted by blocks of so many bytes.
+const BLOCK: usize = 256;
 
 impl Source {
     /// A text and its name, ready to be shared.
     pub fn new(name: impl Into<String>, text: impl Into<String>) -> Arc<Source> {
-        Arc::new(Source { name: name.into(), text: text.into(), line_starts: OnceLock::new() })
+        Arc::new(Source {
+            name: name.into(),
+            text: text.into(),
+            line_starts: OnceLock::new(),
+            characters: OnceLock::new(),
+        })
     }
 
     /// Line and column of a byte, both from 1; columns count characters.
@@ -64,23 +76,46 @@ impl Source {
         while !self.text.is_char_boundary(end) {
             end -= 1;
         }
-        (number, self.text[start..end].chars().count() + 1)
+        (number, self.characters_before(end) - self.characters_before(start) + 1)
     }
 
     /// The line that contains a byte, without its line break, and its first byte.
     pub fn line(&self, byte: usize) -> (usize, &str) {
-        let (_, start) = self.line_at(byte);
-        (start, self.text[start..].lines().next().unwrap_or_default())
+        let (number, start) = self.line_at(byte);
+        let end = self.line_starts().get(number).copied().unwrap_or(self.text.len());
+        let line = &self.text[start..end];
+        let Some(line) = line.strip_suffix('\n') else { return (start, line) };
+        (start, line.strip_suffix('\r').unwrap_or(line))
+    }
+
+    /// The number of characters that begin before a byte.
+    fn characters_before(&self, byte: usize) -> usize {
+        let begins = |bytes: &[u8]| bytes.iter().filter(|&&byte| byte & 0xc0 != 0x80).count();
+        let text = self.text.as_bytes();
+        let blocks = self.characters.get_or_init(|| {
+            let mut before = 0;
+            let ends = text.chunks(BLOCK).map(|block| {
+                before += begins(block);
+                before
+            });
+            std::iter::once(0).chain(ends).collect()
+        });
+        let block = byte / BLOCK;
+        blocks[block] + begins(&text[block * BLOCK..byte])
     }
 
     /// The number, from 1, and the first byte of the line that contains a byte.
     fn line_at(&self, byte: usize) -> (usize, usize) {
-        let starts = self.line_starts.get_or_init(|| {
-            let after = self.text.match_indices('\n').map(|(newline, _)| newline + 1);
-            std::iter::once(0).chain(after).collect()
-        });
+        let starts = self.line_starts();
         let number = starts.partition_point(|&start| start <= byte);
         (number, starts[number - 1])
+    }
+
+    fn line_starts(&self) -> &[usize] {
+        self.line_starts.get_or_init(|| {
+            let after = self.text.match_indices('\n').map(|(newline, _)| newline + 1);
+            std::iter::once(0).chain(after).collect()
+        })
     }
 }
 
@@ -147,6 +182,19 @@ impl Diagnostic {
         }
     }
 
+    /// The same with limited [suggestions](Suggestions).
+    pub fn with_suggestion<'a>(
+        self,
+        suggestions: &Suggestions,
+        wrong: &str,
+        candidates: impl IntoIterator<Item = &'a str>,
+    ) -> Diagnostic {
+        match suggestions.nearest(wrong, candidates) {
+            Some(name) => self.with_hint(format!("did you mean `{name}`?")),
+            None => self,
+        }
+    }
+
     /// Attaches the text that contains the span; the first attached source is kept.
     pub fn in_source(mut self, source: &Arc<Source>) -> Diagnostic {
         self.source.get_or_insert_with(|| source.clone());
@@ -189,6 +237,35 @@ impl fmt::Display for Diagnostic {
     }
 }
 
+/// Suggestions for many unknown names of one text. Each is compared with all candidates, so that
+/// the effort would grow with the square of the text: after a number of comparisons there are no
+/// more suggestions.
+#[derive(Clone, Debug)]
+pub struct Suggestions {
+    left: Cell<usize>,
+}
+
+/// The number of comparisons for the suggestions about one text.
+const COMPARISONS: usize = 300_000;
+
+impl Default for Suggestions {
+    fn default() -> Suggestions {
+        Suggestions { left: Cell::new(COMPARISONS) }
+    }
+}
+
+impl Suggestions {
+    /// The candidate [nearest](nearest) to `wrong`; none if the comparisons are used up.
+    pub fn nearest<'a>(&self, wrong: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+        let candidates = candidates.into_iter().map_while(|name| {
+            self.left.set(self.left.get().checked_sub(1)?);
+            Some(name)
+        });
+        // of candidates that were compared in part the nearest is not known
+        nearest(wrong, candidates).filter(|_| self.left.get() > 0)
+    }
+}
+
 /// The candidate most similar to `wrong`, if at most a third of its letters differ, ignoring case.
 pub fn nearest<'a>(wrong: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let lower = wrong.to_lowercase();
@@ -213,6 +290,34 @@ mod tests {
         assert_eq!(source.position("goalie = aω\nb".len()), (2, 2));
         assert_eq!(source.position(1000), (2, 6));
         assert_eq!(source.position("goalie = a".len() + 1), (1, 11), "within a character");
+    }
+
+    #[test]
+    fn columns_of_a_long_line_count_characters() {
+        let line = "aω球".repeat(500);
+        let source = Source::new("a.srm", format!("b\n{line}\nc"));
+        for (column, (at, _)) in line.char_indices().enumerate() {
+            assert_eq!(source.position(at + 2), (2, column + 1));
+        }
+        assert_eq!(source.line(1000), (2, line.as_str()));
+        assert_eq!(source.position(line.len() + 3), (3, 1));
+    }
+
+    /// A million places in a line of a million characters would take minutes if each counted them.
+    #[test]
+    fn a_place_in_a_long_line_is_found_without_a_look_at_the_whole_line() {
+        let source = Source::new("a.srm", "x".repeat(1_000_000));
+        for byte in (0..1_000_000).step_by(3) {
+            assert_eq!((source.position(byte).1, source.line(byte).0), (byte + 1, 0));
+        }
+    }
+
+    #[test]
+    fn suggestions_end_with_their_comparisons() {
+        let suggestions = Suggestions::default();
+        assert_eq!(suggestions.nearest("Vsion", ["Vision", "Sensors"]), Some("Vision"));
+        assert_eq!(suggestions.nearest("x", std::iter::repeat_n("other", COMPARISONS)), None);
+        assert_eq!(suggestions.nearest("Vsion", ["Vision", "Sensors"]), None);
     }
 
     #[test]

@@ -15,7 +15,7 @@ use crate::chance::{Chance, Freedom};
 use crate::random::Case;
 use crate::script::{self, ByMicroSteps, Interpreter};
 use crate::stepper::Stepper;
-use crate::world::{World, vocabulary};
+use crate::test_host::{TestHost, vocabulary};
 
 /// Result of a case.
 pub(crate) enum Verdict {
@@ -59,26 +59,26 @@ pub(crate) fn judge(case: &Case) -> Verdict {
     }
 }
 
-fn world(case: &Case) -> World {
-    World { verbose: true, reads: true, ..World::new(&case.chart) }
+fn host(case: &Case) -> TestHost {
+    TestHost { verbose: true, reads: true, ..TestHost::new(&case.chart) }
 }
 
 fn by_reference(case: &Case, timers: Vec<(ScopeId, String)>) -> Vec<String> {
-    let mut world = world(case);
+    let mut host = host(case);
     let chance = Chance::new(case.freedom.clone());
     let mut watched =
         Watched { inner: Stepper::new(&case.chart, case.semantics, chance, timers), chart: &case.chart };
-    script::run(&mut watched, &case.script, &mut world);
-    world.say(format!("asked {:?}", watched.inner.chance.reported()));
-    normal(world.log)
+    script::run(&mut watched, &case.script, &mut host);
+    host.say(format!("asked {:?}", watched.inner.chance.reported()));
+    normal(host.log)
 }
 
 fn by_machine<M: Asked>(case: &Case, machine: M, silent: bool) -> Vec<String> {
-    let mut world = World { silent, ..world(case) };
+    let mut host = TestHost { silent, ..host(case) };
     let mut watched = Watched { inner: machine, chart: &case.chart };
-    script::run(&mut watched, &case.script, &mut world);
-    world.say(format!("asked {:?}", watched.inner.machine().chooser().choices()));
-    normal(world.log)
+    script::run(&mut watched, &case.script, &mut host);
+    host.say(format!("asked {:?}", watched.inner.machine().chooser().choices()));
+    normal(host.log)
 }
 
 fn chooser(freedom: &Freedom) -> Chooser {
@@ -129,17 +129,17 @@ impl Asked for ByMicroSteps {
 }
 
 impl<I: Configured> Watched<'_, I> {
-    fn show(&self, world: &mut World) {
+    fn show(&self, host: &mut TestHost) {
         let active = self.chart.nodes().filter(|(id, _)| self.inner.has(*id));
         let numbers: Vec<String> = active.map(|(id, _)| id.0.to_string()).collect();
-        world.say(format!("  active {}", numbers.join(" ")));
+        host.say(format!("  active {}", numbers.join(" ")));
     }
 }
 
 impl<I: Configured> Interpreter for Watched<'_, I> {
-    fn start(&mut self, now: Timestamp, world: &mut World) {
-        self.inner.start(now, world);
-        self.show(world);
+    fn start(&mut self, now: Timestamp, host: &mut TestHost) {
+        self.inner.start(now, host);
+        self.show(host);
     }
 
     fn event(&mut self, name: &str) {
@@ -158,9 +158,9 @@ impl<I: Configured> Interpreter for Watched<'_, I> {
         self.inner.resumed(activation)
     }
 
-    fn step(&mut self, now: Timestamp, world: &mut World) -> Result<(), String> {
-        let result = self.inner.step(now, world);
-        self.show(world);
+    fn step(&mut self, now: Timestamp, host: &mut TestHost) -> Result<(), String> {
+        let result = self.inner.step(now, host);
+        self.show(host);
         result
     }
 

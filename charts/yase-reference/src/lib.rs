@@ -7,7 +7,7 @@
 //! interpreters, counts what occurred in them, and shrinks the first difference.
 //!
 //! The tests of the machine's rules, snapshots and migrations are in this crate, since they share
-//! its test environment: [charts as text](chart()), a [`World`] with blackboards and activities,
+//! its test environment: [charts as text](chart()), a [`TestHost`] with blackboards and activities,
 //! and timed inputs ([`Script`]).
 //!
 //! ```
@@ -29,8 +29,8 @@ pub mod random;
 pub mod script;
 mod shrink;
 mod stepper;
-pub mod world;
+pub mod test_host;
 
 pub use chart::chart;
 pub use script::{ByMicroSteps, Interpreter, Script, play};
-pub use world::World;
+pub use test_host::TestHost;

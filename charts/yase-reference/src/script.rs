@@ -1,4 +1,4 @@
-//! Timed inputs of a world, and an interpreter that plays them.
+//! Timed inputs of a host, and an interpreter that plays them.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -8,12 +8,12 @@ use yase::{
     TopicId,
 };
 
-use super::world::{TOPICS, World, vocabulary};
+use super::test_host::{TOPICS, TestHost, vocabulary};
 
 /// An interpreter of charts: the machine, or the reference.
 pub trait Interpreter {
     /// Starts the chart.
-    fn start(&mut self, now: Timestamp, world: &mut World);
+    fn start(&mut self, now: Timestamp, host: &mut TestHost);
     /// An event comes.
     fn event(&mut self, name: &str);
     /// A message has arrived on a topic.
@@ -23,7 +23,7 @@ pub trait Interpreter {
     /// Reports a repeated call of an activity; false if its activation is outdated.
     fn resumed(&mut self, activation: Activation) -> bool;
     /// Executes a step; `Err` with a text if the chart fails.
-    fn step(&mut self, now: Timestamp, world: &mut World) -> Result<(), String>;
+    fn step(&mut self, now: Timestamp, host: &mut TestHost) -> Result<(), String>;
     /// Whether a step is due.
     fn needs_step(&self, now: Timestamp) -> bool;
     /// When the next timer expires.
@@ -33,8 +33,8 @@ pub trait Interpreter {
 }
 
 impl Interpreter for Machine {
-    fn start(&mut self, now: Timestamp, world: &mut World) {
-        Machine::start(self, now, world);
+    fn start(&mut self, now: Timestamp, host: &mut TestHost) {
+        Machine::start(self, now, host);
     }
 
     fn event(&mut self, name: &str) {
@@ -53,8 +53,8 @@ impl Interpreter for Machine {
         self.activity_resumed(activation)
     }
 
-    fn step(&mut self, now: Timestamp, world: &mut World) -> Result<(), String> {
-        self.run_to_completion(now, world).map(|_| ()).map_err(|error| error.to_string())
+    fn step(&mut self, now: Timestamp, host: &mut TestHost) -> Result<(), String> {
+        self.run_to_completion(now, host).map(|_| ()).map_err(|error| error.to_string())
     }
 
     fn needs_step(&self, now: Timestamp) -> bool {
@@ -74,8 +74,8 @@ impl Interpreter for Machine {
 pub struct ByMicroSteps(pub Machine);
 
 impl Interpreter for ByMicroSteps {
-    fn start(&mut self, now: Timestamp, world: &mut World) {
-        self.0.start(now, world);
+    fn start(&mut self, now: Timestamp, host: &mut TestHost) {
+        self.0.start(now, host);
     }
 
     fn event(&mut self, name: &str) {
@@ -94,9 +94,9 @@ impl Interpreter for ByMicroSteps {
         self.0.activity_resumed(activation)
     }
 
-    fn step(&mut self, now: Timestamp, world: &mut World) -> Result<(), String> {
+    fn step(&mut self, now: Timestamp, host: &mut TestHost) -> Result<(), String> {
         loop {
-            match self.0.micro_step(now, world) {
+            match self.0.micro_step(now, host) {
                 Ok(MicroStep::Progressed) => {}
                 Ok(MicroStep::Stable(_)) => return Ok(()),
                 Err(error) => return Err(error.to_string()),
@@ -169,32 +169,32 @@ pub fn compile_with(chart: &Statechart, semantics: Semantics) -> Arc<CompiledCha
     }
 }
 
-/// Plays a script on a machine and returns the log of the world.
+/// Plays a script on a machine and returns the log of the host.
 pub fn play(chart: &Statechart, script: &str) -> Vec<String> {
     play_with(chart, script, Semantics::yase())
 }
 
 /// The same for a semantics.
 pub fn play_with(chart: &Statechart, script: &str, semantics: Semantics) -> Vec<String> {
-    let (mut world, script) = (World::new(chart), Script::parse(script));
+    let (mut host, script) = (TestHost::new(chart), Script::parse(script));
     let chart = compile_with(chart, semantics);
     let mut machine = Machine::new(chart.clone());
-    let (silent, mut again) = (World { silent: true, ..world.clone() }, world.clone());
-    run(&mut machine, &script, &mut world);
+    let (silent, mut again) = (TestHost { silent: true, ..host.clone() }, host.clone());
+    run(&mut machine, &script, &mut host);
     let mut by_micro_steps = ByMicroSteps(Machine::new(chart.clone()));
     run(&mut by_micro_steps, &script, &mut again);
-    assert_eq!(world.log, again.log, "one micro-step at a time");
+    assert_eq!(host.log, again.log, "one micro-step at a time");
     assert_eq!(machine.configuration(), by_micro_steps.0.configuration());
-    assert_silent_alike(&machine, &world, silent, chart, &script);
-    world.log
+    assert_silent_alike(&machine, &host, silent, chart, &script);
+    host.log
 }
 
 /// Plays a script again on a machine without an observer, and asserts that everything else is
 /// equal.
 pub fn assert_silent_alike(
     traced: &Machine,
-    seen: &World,
-    mut silent: World,
+    seen: &TestHost,
+    mut silent: TestHost,
     chart: Arc<CompiledChart>,
     script: &Script,
 ) {
@@ -212,21 +212,21 @@ pub fn assert_silent_alike(
 
 /// Plays a script from time 0 in simulated time: at each time inputs come first, then activities,
 /// then the step.
-pub fn run(interpreter: &mut impl Interpreter, script: &Script, world: &mut World) {
+pub fn run(interpreter: &mut impl Interpreter, script: &Script, host: &mut TestHost) {
     let mut inputs = script.inputs.iter().peekable();
-    interpreter.start(Timestamp::ZERO, world);
+    interpreter.start(Timestamp::ZERO, host);
     let mut now = Timestamp::ZERO;
     loop {
-        world.now = now;
+        host.now = now;
         while let Some((_, input)) = inputs.next_if(|(time, _)| Timestamp::from_millis(*time) <= now) {
-            apply(interpreter, world, input);
+            apply(interpreter, host, input);
         }
-        if !settle(interpreter, now, world) {
+        if !settle(interpreter, now, host) {
             return;
         }
         let next = [
             inputs.peek().map(|(time, _)| Timestamp::from_millis(*time)),
-            world.jobs.iter().map(|job| job.due).min(),
+            host.jobs.iter().map(|job| job.due).min(),
             interpreter.next_deadline(),
         ];
         let Some(next) = next.into_iter().flatten().min() else { return };
@@ -237,42 +237,42 @@ pub fn run(interpreter: &mut impl Interpreter, script: &Script, world: &mut Worl
     }
 }
 
-fn apply(interpreter: &mut impl Interpreter, world: &mut World, input: &Input) {
+fn apply(interpreter: &mut impl Interpreter, host: &mut TestHost, input: &Input) {
     match input {
         Input::Event(name) => interpreter.event(name),
         Input::Message(topic, value) => {
-            world.send(*topic, *value, (0..interpreter.regions() as u32).map(ScopeId));
-            report_arrivals(interpreter, world);
+            host.send(*topic, *value, (0..interpreter.regions() as u32).map(ScopeId));
+            report_arrivals(interpreter, host);
         }
     }
 }
 
-fn report_arrivals(interpreter: &mut impl Interpreter, world: &mut World) {
-    for topic in std::mem::take(&mut world.arrivals) {
+fn report_arrivals(interpreter: &mut impl Interpreter, host: &mut TestHost) {
+    for topic in std::mem::take(&mut host.arrivals) {
         interpreter.message(topic);
     }
 }
 
 /// Processes activities and steps until nothing is due; false if the interpreter failed.
-fn settle(interpreter: &mut impl Interpreter, now: Timestamp, world: &mut World) -> bool {
+fn settle(interpreter: &mut impl Interpreter, now: Timestamp, host: &mut TestHost) -> bool {
     loop {
-        while let Some(index) = (0..world.jobs.len()).find(|&index| world.jobs[index].due <= now) {
-            advance(interpreter, now, world, index);
+        while let Some(index) = (0..host.jobs.len()).find(|&index| host.jobs[index].due <= now) {
+            advance(interpreter, now, host, index);
         }
         if !interpreter.needs_step(now) {
             return true;
         }
-        if let Err(error) = interpreter.step(now, world) {
-            world.say(format!("error: {error}"));
+        if let Err(error) = interpreter.step(now, host) {
+            host.say(format!("error: {error}"));
             return false;
         }
-        report_arrivals(interpreter, world);
+        report_arrivals(interpreter, host);
     }
 }
 
 /// An activity returns or, if it waits, is called again.
-fn advance(interpreter: &mut impl Interpreter, now: Timestamp, world: &mut World, index: usize) {
-    let job = &mut world.jobs[index];
+fn advance(interpreter: &mut impl Interpreter, now: Timestamp, host: &mut TestHost, index: usize) {
+    let job = &mut host.jobs[index];
     let activation = job.activation;
     if job.waits {
         match interpreter.resumed(activation) {
@@ -281,11 +281,11 @@ fn advance(interpreter: &mut impl Interpreter, now: Timestamp, world: &mut World
         }
         return;
     }
-    let outcome = World::outcome(job);
+    let outcome = TestHost::outcome(job);
     let text = format!("  {} returns {outcome:?}", job.name);
     (job.waits, job.due) = (true, now + Duration::from_millis(10));
-    world.say(text);
+    host.say(text);
     if !interpreter.returned(activation, outcome) || outcome != Outcome::Ongoing {
-        world.jobs.remove(index);
+        host.jobs.remove(index);
     }
 }

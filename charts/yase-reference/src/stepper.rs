@@ -20,7 +20,7 @@ use yase::{Activation, Outcome, ScopeId, Semantics, Timestamp, TopicId};
 
 use crate::chance::Chance;
 use crate::script::Interpreter;
-use crate::world::{TOPICS, World};
+use crate::test_host::{TOPICS, TestHost};
 use transitions::StaticPath;
 use tree::Tree;
 
@@ -208,12 +208,12 @@ fn topic(name: &str) -> Option<TopicId> {
 }
 
 impl Interpreter for Stepper<'_> {
-    fn start(&mut self, now: Timestamp, world: &mut World) {
+    fn start(&mut self, now: Timestamp, host: &mut TestHost) {
         self.now = now;
         self.instant = now;
         self.running_chart = true;
         self.due = true;
-        self.begin_chart(world);
+        self.begin_chart(host);
     }
 
     fn event(&mut self, name: &str) {
@@ -280,12 +280,12 @@ impl Interpreter for Stepper<'_> {
         true
     }
 
-    fn step(&mut self, now: Timestamp, world: &mut World) -> Result<(), String> {
+    fn step(&mut self, now: Timestamp, host: &mut TestHost) -> Result<(), String> {
         self.now = now;
-        match self.whole_step(world) {
+        match self.whole_step(host) {
             Ok(()) => Ok(()),
             Err(failure) => {
-                self.halt(world);
+                self.halt(host);
                 Err(self.describe(&failure))
             }
         }

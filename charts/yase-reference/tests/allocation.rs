@@ -43,7 +43,7 @@ const A: TopicId = TopicId(0);
 
 /// For each blackboard one number and one activity, and nothing that grows.
 #[derive(Default)]
-struct World {
+struct TestHost {
     traces: bool,
     boards: [i64; 8],
     jobs: [Option<Activation>; 3],
@@ -52,7 +52,7 @@ struct World {
     published: u64,
 }
 
-impl Host for World {
+impl Host for TestHost {
     fn field(&self, region: ScopeId, _: &MessageSource, _: &[FieldId]) -> Value<'_> {
         Value::Int(self.boards[region.0 as usize])
     }
@@ -121,10 +121,10 @@ fn vocabulary() -> TypeEnvironment {
     }
 }
 
-/// A machine in its world.
+/// A machine with its host.
 struct Run {
     machine: Machine,
-    world: World,
+    host: TestHost,
     now: u64,
     transitions: u32,
 }
@@ -135,9 +135,9 @@ impl Run {
         let chart =
             yase_reference::chart(text).compile(&vocabulary()).unwrap_or_else(|found| panic!("{found:?}"));
         let machine = Machine::new(Arc::new(chart));
-        let world = World { traces, ..World::default() };
-        let mut run = Run { machine, world, now: 0, transitions: 0 };
-        run.machine.start(Timestamp::ZERO, &mut run.world);
+        let host = TestHost { traces, ..TestHost::default() };
+        let mut run = Run { machine, host, now: 0, transitions: 0 };
+        run.machine.start(Timestamp::ZERO, &mut run.host);
         run.step(0);
         run
     }
@@ -146,7 +146,7 @@ impl Run {
     fn step(&mut self, millis: u64) {
         self.now += millis;
         let summary =
-            self.machine.run_to_completion(Timestamp::from_millis(self.now), &mut self.world).unwrap();
+            self.machine.run_to_completion(Timestamp::from_millis(self.now), &mut self.host).unwrap();
         self.transitions += summary.transitions;
     }
 
@@ -158,14 +158,14 @@ impl Run {
 
     /// The activity of a region returns for good.
     fn returns(&mut self, region: usize) {
-        let activation = self.world.jobs[region].take().unwrap();
+        let activation = self.host.jobs[region].take().unwrap();
         assert!(self.machine.activity_returned(activation, Outcome::Done));
         self.step(1);
     }
 
     /// The activity of a region returns, and is called again.
     fn is_called_again(&mut self, region: usize) {
-        let activation = self.world.jobs[region].unwrap();
+        let activation = self.host.jobs[region].unwrap();
         assert!(self.machine.activity_returned(activation, Outcome::Ongoing));
         self.step(1);
         assert!(self.machine.activity_resumed(activation));
@@ -178,12 +178,12 @@ fn assert_allocates_nothing(text: &str, transitions: u32, mut cycle: impl FnMut(
     for traces in [false, true] {
         let mut run = Run::new(text, traces);
         (0..10).for_each(|_| cycle(&mut run));
-        (run.transitions, run.world.seen) = (0, 0);
+        (run.transitions, run.host.seen) = (0, 0);
         let before = ALLOCATIONS.get();
         (0..100).for_each(|_| cycle(&mut run));
         assert_eq!(ALLOCATIONS.get() - before, 0, "allocations, traced: {traces}");
         assert_eq!(run.transitions, 100 * transitions, "the chart does what is meant");
-        assert_eq!(run.world.seen > 0, traces);
+        assert_eq!(run.host.seen > 0, traces);
     }
 }
 

@@ -18,7 +18,7 @@ use super::content::{Block, Invoke, Payload, ScriptSource};
 use super::document::{DataBinding, DataDeclaration, DataModel, Document};
 use super::language::ScriptExpression;
 use super::xml::{is_scxml, tag};
-use yase::diagnostic::{Diagnostic, Source, Span};
+use yase::diagnostic::{Diagnostic, Source, Span, Suggestions};
 use yase::expression::Trigger;
 use yase::statechart::{NodeId, Statechart};
 
@@ -151,6 +151,7 @@ impl PendingTransition {
 pub(crate) struct DocumentReader<'a> {
     text: &'a str,
     found: Vec<Diagnostic>,
+    suggestions: Suggestions,
     data_model: DataModel,
     binding: DataBinding,
     statechart: Statechart,
@@ -169,6 +170,7 @@ impl<'a> DocumentReader<'a> {
         DocumentReader {
             text,
             found: Vec::new(),
+            suggestions: Suggestions::default(),
             data_model: DataModel::Ecmascript,
             binding: DataBinding::Early,
             statechart: Statechart::new(""),

@@ -250,7 +250,7 @@ impl Statechart {
         &mut Arc::make_mut(&mut self.parts).transitions[id.0 as usize]
     }
 
-    /// The children of a node, in order.
+    /// The children of a node, in the order they were added, which is that of their ids.
     ///
     /// # Panics
     /// If the node does not belong to this chart.
@@ -302,8 +302,7 @@ impl Statechart {
     /// The last segment of its path.
     pub(crate) fn segment(&self, id: NodeId) -> String {
         let node = self.node(id);
-        let place =
-            || node.parent.and_then(|parent| self.children(parent).iter().position(|&child| child == id));
+        let place = || node.parent.and_then(|parent| self.children(parent).binary_search(&id).ok());
         segment_of(node, || place().map_or(1, |index| index + 1))
     }
 

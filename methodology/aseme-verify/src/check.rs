@@ -45,6 +45,7 @@ mod structure;
 mod timers;
 mod topics;
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use yase::{Diagnostic, Severity, Source};
@@ -53,8 +54,9 @@ use aseme_models::convert::{self, Model};
 use aseme_models::iac::Variable;
 use aseme_models::ontology;
 
-use crate::check_settings::CheckSettings;
+use crate::check_settings::{CheckSettings, CheckedParts};
 use crate::checked_model::{self, CheckedModel};
+use crate::diagnostic_names::DiagnosticNames;
 use crate::exploration_extent::ExplorationExtent;
 use crate::finding::Finding;
 
@@ -162,7 +164,7 @@ pub const CHECKS: &[Check] = {
 };
 
 /// The result of a check.
-#[derive(Clone, PartialEq, Eq, Debug, Default)]
+#[derive(Clone, PartialEq, Debug, Default)]
 #[non_exhaustive]
 pub struct CheckReport {
     /// The kind of the model; none if it could not be read.
@@ -171,6 +173,10 @@ pub struct CheckReport {
     pub findings: Vec<Finding>,
     /// The extent of the exploration, if the chart was explored.
     pub explored: Option<ExplorationExtent>,
+    /// Whether the observer stopped the checks of nodes and transitions, so that some are missing.
+    pub is_stopped: bool,
+    /// The names of the chart's nodes in messages.
+    names: Option<Arc<DiagnosticNames>>,
 }
 
 impl CheckReport {
@@ -182,6 +188,16 @@ impl CheckReport {
     /// Whether the model could not be read; then no checks were run.
     pub fn is_unreadable(&self) -> bool {
         self.what.is_none()
+    }
+
+    /// The paths of the states that a finding names, by the names that its message and its hint
+    /// have for them.
+    pub fn state_paths(&self, finding: &Finding) -> BTreeMap<String, String> {
+        let Some(names) = &self.names else { return BTreeMap::new() };
+        let texts = [Some(&finding.diagnostic.message), finding.diagnostic.hint.as_ref()];
+        let quoted = texts.into_iter().flatten().flat_map(|text| text.split('`').skip(1).step_by(2));
+        let ends = quoted.flat_map(|quoted| quoted.split(" -> "));
+        ends.filter_map(|name| Some((name.to_owned(), names.path(names.find(name)?)))).collect()
     }
 
     /// Whether any finding is an error.
@@ -207,7 +223,7 @@ pub fn check(source: &Arc<Source>, settings: &CheckSettings) -> CheckReport {
             CheckReport {
                 what: Some(what),
                 findings: findings(read, roles::check(&model, settings.world.as_ref())),
-                explored: None,
+                ..CheckReport::default()
             }
         }
         Some(_) => unreadable(read),
@@ -221,7 +237,7 @@ pub fn check(source: &Arc<Source>, settings: &CheckSettings) -> CheckReport {
 }
 
 fn unreadable(read: Vec<Diagnostic>) -> CheckReport {
-    CheckReport { what: None, findings: findings(read, Vec::new()), explored: None }
+    CheckReport { findings: findings(read, Vec::new()), ..CheckReport::default() }
 }
 
 fn findings(read: Vec<Diagnostic>, found: Vec<Diagnostic>) -> Vec<Finding> {
@@ -261,24 +277,16 @@ fn charted(
     if read.iter().any(Diagnostic::is_error) {
         return unreadable(read);
     }
+    // The guards of each are checked, and names and structure once for all.
+    let size = subject.chart.nodes().len() + subject.chart.transitions().len();
+    let parts = CheckedParts::new(settings, 2 * size);
     let mut found = structure::check(&subject);
-    if !found.iter().any(Diagnostic::is_error) {
-        found.extend(events::check(&subject, settings));
-        found.extend(timers::check(&subject));
-        found.extend(guards::check(&subject));
-        found.extend(profiles::check(&subject));
-        found.extend(messages::same_step(&subject));
-        // The scripts of other charts name nothing of the program.
-        match settings.world.as_ref().filter(|_| is_ours(&subject)) {
-            Some(world) => {
-                found.extend(messages::names(&subject, world));
-                found.extend(topics::unmet(&subject, world));
-            }
-            None => found.extend(messages::names_like_formulas(&subject)),
-        }
-        found.extend(settings.world.iter().flat_map(|world| freshness::stale(&subject, world)));
+    if parts.go_on_after(size) && !found.iter().any(Diagnostic::is_error) {
+        about_parts(&subject, settings, &parts, &mut found);
     }
-    let can_be_explored = settings.states > 0 && is_ours(&subject) && !found.iter().any(Diagnostic::is_error);
+    let is_stopped = parts.is_stopped();
+    let can_be_explored =
+        settings.states > 0 && !is_stopped && is_ours(&subject) && !found.iter().any(Diagnostic::is_error);
     let (explored, extent) = match can_be_explored {
         true => exploration::check(&subject, settings, &found),
         false => (Vec::new(), None),
@@ -290,6 +298,40 @@ fn charted(
         what: Some(format!("{nodes} nodes, {transitions} transitions")),
         findings,
         explored: extent,
+        is_stopped,
+        names: Some(subject.names.clone()),
+    }
+}
+
+/// The checks of a chart without structural errors, until the observer stops them.
+fn about_parts(
+    subject: &CheckedModel,
+    settings: &CheckSettings,
+    parts: &CheckedParts<'_>,
+    found: &mut Vec<Diagnostic>,
+) {
+    found.extend(events::check(subject, settings));
+    found.extend(timers::check(subject));
+    found.extend(guards::check(subject, parts));
+    let checks: [&dyn Fn() -> Vec<Diagnostic>; 4] = [
+        &|| profiles::check(subject),
+        &|| messages::same_step(subject),
+        // The scripts of other charts name nothing of the program.
+        &|| match settings.world.as_ref().filter(|_| is_ours(subject)) {
+            Some(world) => {
+                let mut found = messages::names(subject, world);
+                found.extend(topics::unmet(subject, world));
+                found
+            }
+            None => messages::names_like_formulas(subject),
+        },
+        &|| settings.world.iter().flat_map(|world| freshness::stale(subject, world)).collect(),
+    ];
+    for check in checks {
+        if !parts.go_on_after(0) {
+            return;
+        }
+        found.extend(check());
     }
 }
 

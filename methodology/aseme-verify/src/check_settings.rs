@@ -1,5 +1,6 @@
 //! Settings of checks: the environment of a chart and the limits of exploration.
 
+use std::cell::Cell;
 use std::collections::BTreeSet;
 use std::fmt;
 use std::ops::ControlFlow;
@@ -30,24 +31,45 @@ pub struct CheckSettings {
     pub recorded: Vec<RecordedCoverage>,
 }
 
+/// How far a check has come.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[non_exhaustive]
+pub enum CheckProgress {
+    /// Nodes and transitions are checked: how many have been, of how many.
+    Checking {
+        /// The number that has been checked.
+        done: usize,
+        /// The number of all.
+        of: usize,
+    },
+    /// States are explored.
+    Exploring(ExplorationProgress),
+}
+
 /// Follows the progress of a check: called again and again with how far it has come; it may stop
 /// it, which then gives what is known. A check reads no clock: its caller does.
 #[derive(Clone)]
-pub struct ProgressObserver(Arc<Observe>);
-
-type Observe = dyn Fn(ExplorationProgress) -> ControlFlow<()> + Send + Sync;
+pub struct ProgressObserver {
+    checking: Arc<dyn Fn(CheckProgress) -> ControlFlow<()> + Send + Sync>,
+    exploring: Arc<dyn Fn(ExplorationProgress) -> ControlFlow<()> + Send + Sync>,
+}
 
 impl ProgressObserver {
     /// An observer that calls a function.
     pub fn new(
-        observe: impl Fn(ExplorationProgress) -> ControlFlow<()> + Send + Sync + 'static,
+        observe: impl Fn(CheckProgress) -> ControlFlow<()> + Send + Sync + 'static,
     ) -> ProgressObserver {
-        ProgressObserver(Arc::new(observe))
+        let checking = Arc::new(observe);
+        let exploring = checking.clone();
+        ProgressObserver {
+            checking,
+            exploring: Arc::new(move |progress| exploring(CheckProgress::Exploring(progress))),
+        }
     }
 
-    /// Whether the check has to stop.
+    /// Whether an exploration has to stop.
     pub(crate) fn stops(&self, progress: ExplorationProgress) -> bool {
-        (self.0)(progress).is_break()
+        (self.exploring)(progress).is_break()
     }
 }
 
@@ -55,6 +77,37 @@ impl Default for ProgressObserver {
     /// One that never stops a check.
     fn default() -> ProgressObserver {
         ProgressObserver::new(|_| ControlFlow::Continue(()))
+    }
+}
+
+/// Counts the nodes and transitions that are checked before an exploration.
+pub(crate) struct CheckedParts<'a> {
+    observer: &'a ProgressObserver,
+    done: Cell<usize>,
+    of: usize,
+    is_stopped: Cell<bool>,
+}
+
+impl<'a> CheckedParts<'a> {
+    /// None yet of a number.
+    pub(crate) fn new(settings: &'a CheckSettings, of: usize) -> CheckedParts<'a> {
+        let (done, is_stopped) = (Cell::new(0), Cell::new(false));
+        CheckedParts { observer: &settings.observer, done, of, is_stopped }
+    }
+
+    /// Counts some parts. Whether the observer lets the check go on.
+    pub(crate) fn go_on_after(&self, parts: usize) -> bool {
+        let done = self.done.get() + parts;
+        self.done.set(done);
+        let progress = CheckProgress::Checking { done, of: self.of };
+        let is_stopped = self.is_stopped.get() || (self.observer.checking)(progress).is_break();
+        self.is_stopped.set(is_stopped);
+        !is_stopped
+    }
+
+    /// Whether the observer has stopped the check.
+    pub(crate) fn is_stopped(&self) -> bool {
+        self.is_stopped.get()
     }
 }
 
@@ -67,7 +120,7 @@ impl fmt::Debug for ProgressObserver {
 impl CheckSettings {
     /// The limits of an exploration.
     pub(crate) fn limits(&self) -> ExplorationLimits<'_> {
-        ExplorationLimits { states: self.states, bytes: self.bytes, observe: &*self.observer.0 }
+        ExplorationLimits { states: self.states, bytes: self.bytes, observe: &*self.observer.exploring }
     }
 }
 

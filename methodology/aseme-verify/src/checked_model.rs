@@ -8,18 +8,15 @@ use std::sync::Arc;
 
 use yase::expression::{TextPosition, Trigger};
 use yase::{Diagnostic, NodeId, NodeKind, Semantics, Source, Span, Statechart, Transition, TransitionId};
-use yase_export::notation::kind_word;
 
 use aseme::liveness::Liveness;
 use aseme::srm::Srm;
-use aseme::{path, transform};
+use aseme::transform;
 use aseme_models::convert::{self, Model};
 use aseme_models::iac::Iac;
 use source_spans::SourceSpans;
 
-/// The largest chart whose nodes get the shortest unique path: the search for it is slow in large
-/// charts.
-const BRIEF: usize = 400;
+use crate::diagnostic_names::DiagnosticNames;
 
 /// A chart that is checked.
 pub(crate) struct CheckedModel {
@@ -35,6 +32,8 @@ pub(crate) struct CheckedModel {
     pub(crate) incoming: Vec<Vec<TransitionId>>,
     /// By node: its number in a walk through the tree, and the number after those inside it.
     extents: Vec<(u32, u32)>,
+    /// The names of the nodes in diagnostics.
+    pub(crate) names: Arc<DiagnosticNames>,
 }
 
 /// Builds the chart of a role as far as possible, and reports what does not fit.
@@ -148,7 +147,8 @@ impl CheckedModel {
             });
         }
         let extents = extents(&chart);
-        CheckedModel { chart, places, semantics, liveness: None, outgoing, incoming, extents }
+        let names = Arc::new(DiagnosticNames::new(&chart));
+        CheckedModel { chart, places, semantics, liveness: None, outgoing, incoming, extents, names }
     }
 
     pub(crate) fn kind(&self, node: NodeId) -> NodeKind {
@@ -195,42 +195,14 @@ impl CheckedModel {
         (self.kind(around) == NodeKind::And).then_some((around, one[fork], other[fork]))
     }
 
-    /// The path of a node in diagnostics.
+    /// The name of a node in diagnostics.
     pub(crate) fn path(&self, node: NodeId) -> String {
-        match self.chart.nodes().len() <= BRIEF {
-            true if !self.chart.node(node).name.is_empty() || node == Statechart::ROOT => {
-                path::shortest_path(&self.chart, node)
-            }
-            true => self.place_in_parent(node),
-            false => self.chart.path(node),
-        }
-    }
-
-    /// The description of a node without a name: its kind and its composite.
-    fn place_in_parent(&self, node: NodeId) -> String {
-        let kind = self.kind(node);
-        let Some(parent) = self.chart.node(node).parent else { return String::new() };
-        let siblings = self.chart.children(parent);
-        let alike: Vec<NodeId> = siblings
-            .iter()
-            .copied()
-            .filter(|&it| self.kind(it) == kind && self.chart.node(it).name.is_empty())
-            .collect();
-        let number = alike.iter().position(|&it| it == node).unwrap_or(0) + 1;
-        let word = match alike.len() {
-            1 => kind_word(kind).to_owned(),
-            _ if self.is_region(node) => number.to_string(),
-            _ => format!("{}[{number}]", kind_word(kind)),
-        };
-        let is_alone =
-            self.chart.nodes().filter(|(_, it)| it.kind == kind && it.name.is_empty()).count() == 1;
-        if is_alone { word } else { format!("{}/{word}", self.path(parent)) }
+        self.names.name(node)
     }
 
     /// `a -> b`
     pub(crate) fn arrow(&self, id: TransitionId) -> String {
-        let transition = self.transition(id);
-        format!("{} -> {}", self.path(transition.source), self.path(transition.target))
+        self.names.transition(id)
     }
 
     /// The trigger of a transition, with inherited events resolved.

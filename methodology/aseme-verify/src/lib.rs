@@ -46,6 +46,7 @@ mod checked_model;
 pub mod composition;
 mod cone_of_influence;
 mod conformance;
+mod diagnostic_names;
 mod exploration_extent;
 mod finding;
 pub mod logic;
@@ -58,7 +59,8 @@ pub mod scenario;
 mod strongly_connected_components;
 
 pub use abstraction::explorable;
-pub use check_settings::{CheckSettings, ProgressObserver, RecordedCoverage};
+pub use check_settings::{CheckProgress, CheckSettings, ProgressObserver, RecordedCoverage};
+pub use diagnostic_names::DiagnosticNames;
 pub use exploration_extent::ExplorationExtent;
 pub use finding::Finding;
 pub use program_symbols::ProgramSymbols;

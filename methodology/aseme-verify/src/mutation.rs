@@ -43,6 +43,8 @@ use yase::{Diagnostic, Source, Span, Statechart, Transition, TransitionId};
 
 use aseme::path::shortest_transition;
 
+use crate::diagnostic_names::DiagnosticNames;
+
 /// What was changed.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
 pub enum MutationKind {
@@ -112,6 +114,8 @@ pub struct Mutant {
     pub kind: MutationKind,
     /// The name: the changed element, `#`, the kind, and a number from the second of that kind on.
     pub name: String,
+    /// The path of the changed element, or those of the ends of a transition.
+    pub path: String,
     /// The change, in the notation of the model.
     pub description: String,
     /// What a scenario has to distinguish to detect it.
@@ -129,8 +133,14 @@ pub struct Mutant {
 /// The errors that prevent reading the model, or an error if its kind has no chart.
 pub fn mutants(source: &Arc<Source>) -> Result<Vec<Mutant>, Vec<Diagnostic>> {
     let (chart, places) = crate::checked_model::chart_and_places(source)?;
-    let mut making =
-        MutantCollector { source, chart: &chart, places: &places, known: BTreeSet::new(), made: Vec::new() };
+    let mut making = MutantCollector {
+        source,
+        chart: &chart,
+        names: DiagnosticNames::new(&chart),
+        places: &places,
+        known: BTreeSet::new(),
+        made: Vec::new(),
+    };
     for (id, _) in chart.transitions() {
         guards::of_transition(&mut making, id);
         actions::of_transition(&mut making, id);
@@ -141,10 +151,14 @@ pub fn mutants(source: &Arc<Source>) -> Result<Vec<Mutant>, Vec<Diagnostic>> {
     Ok(making.named())
 }
 
+/// The most characters of a transition as a role writes it in the name of a mutant.
+const BRIEF: usize = 80;
+
 /// Collects mutants.
 struct MutantCollector<'a> {
     source: &'a Arc<Source>,
     chart: &'a Statechart,
+    names: DiagnosticNames,
     places: &'a [Span],
     /// The changes so far, to skip duplicates.
     known: BTreeSet<String>,
@@ -162,7 +176,8 @@ struct MutantDescription {
 impl MutantCollector<'_> {
     /// The name of a transition.
     fn arrow(&self, id: TransitionId) -> String {
-        shortest_transition(self.chart, id)
+        let written = shortest_transition(self.chart, id);
+        if written.chars().count() <= BRIEF { written } else { self.names.transition(id) }
     }
 
     /// Adds a mutant with one transition replaced.
@@ -190,17 +205,24 @@ impl MutantCollector<'_> {
         let it = chart.transition(id);
         let what = format!("{} {} {} {}", id.0, it.target.0, it.priority, it.expression);
         let span = self.places.get(id.0 as usize).copied().unwrap_or_default();
-        self.add(&what, self.arrow(id), span, mutation, chart);
+        self.add(&what, (self.arrow(id), self.names.transition_path(id)), span, mutation, chart);
     }
 
-    /// Adds a mutant unless an equal one exists.
-    fn add(&mut self, what: &str, place: String, span: Span, mutation: MutantDescription, chart: Statechart) {
+    /// Adds a mutant of an element with a name and a path, unless an equal one exists.
+    fn add(
+        &mut self,
+        what: &str,
+        (place, path): (String, String),
+        span: Span,
+        mutation: MutantDescription,
+        chart: Statechart,
+    ) {
         if !self.known.insert(what.to_owned()) {
             return;
         }
         let MutantDescription { kind, change, wanted } = mutation;
         let description = format!("{place}: {change}");
-        self.made.push((place, Mutant { kind, name: String::new(), description, wanted, span, chart }));
+        self.made.push((place, Mutant { kind, name: String::new(), path, description, wanted, span, chart }));
     }
 
     /// Assigns names to the mutants.

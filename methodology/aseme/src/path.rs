@@ -86,8 +86,20 @@ impl Path {
 
     /// The name of the node itself, unless it is known by its kind or number.
     fn last_name(&self) -> Option<&str> {
-        match &self.segments.last()?.pattern {
-            SegmentPattern::Name(name) if !name.bytes().all(|byte| byte.is_ascii_digit()) => Some(name),
+        self.segments.last()?.pattern.name()
+    }
+
+    /// The name of the node in which a node known by its kind or number is looked for.
+    fn name_around(&self) -> Option<&str> {
+        let (_, before) = self.segments.split_last()?;
+        before.last()?.pattern.name()
+    }
+
+    /// The number of the region in which a connector is looked for.
+    fn region_around(&self) -> Option<usize> {
+        let (_, before) = self.segments.split_last()?;
+        match &before.last()?.pattern {
+            SegmentPattern::Name(name) => name.parse().ok(),
             _ => None,
         }
     }
@@ -188,6 +200,14 @@ impl SegmentPattern {
         }
     }
 
+    /// The name that a node of this pattern has, unless it is its number.
+    fn name(&self) -> Option<&str> {
+        match self {
+            SegmentPattern::Name(name) if !name.bytes().all(|byte| byte.is_ascii_digit()) => Some(name),
+            _ => None,
+        }
+    }
+
     fn text(&self) -> &str {
         match self {
             SegmentPattern::Name(name) => name,
@@ -251,7 +271,7 @@ fn goes_on_forever(chart: &Statechart, node: NodeId) -> bool {
 
 /// The number of a node among its siblings, from 1.
 fn place(chart: &Statechart, node: NodeId) -> usize {
-    siblings(chart, node).iter().position(|&sibling| sibling == node).map_or(1, |index| index + 1)
+    siblings(chart, node).binary_search(&node).map_or(1, |index| index + 1)
 }
 
 fn siblings(chart: &Statechart, node: NodeId) -> &[NodeId] {

@@ -25,20 +25,20 @@ use yase::{Chooser, CompiledChart, Machine};
 use yase_reference::chance::Freedom;
 use yase_reference::random::Case;
 use yase_reference::script;
-use yase_reference::world::{World, vocabulary};
+use yase_reference::test_host::{TestHost, vocabulary};
 
 /// The trace of all calls to the host.
 fn played(case: &Case, chart: CompiledChart) -> Vec<String> {
-    let mut world = World { verbose: true, reads: true, ..World::new(&case.chart) };
+    let mut host = TestHost { verbose: true, reads: true, ..TestHost::new(&case.chart) };
     let mut machine = Machine::new(Arc::new(chart));
     machine.set_chooser(match &case.freedom {
         Freedom::Declared => Chooser::declared(),
         Freedom::Seeded(seed) => Chooser::seeded(*seed),
         Freedom::Scripted(choices) => Chooser::scripted(choices.clone()),
     });
-    script::run(&mut machine, &case.script, &mut world);
-    world.say(format!("at the end {:?} {:?}", machine.status(), machine.configuration()));
-    world.log
+    script::run(&mut machine, &case.script, &mut host);
+    host.say(format!("at the end {:?} {:?}", machine.status(), machine.configuration()));
+    host.log
 }
 
 #[test]

@@ -8,46 +8,45 @@ use yase::statechart::{NodeId, NodeKind, TransitionId};
 use yase::{Activation, FieldId, Host, ScopeId, TimerScope, Value, WriteVisibility};
 
 use super::{Deadline, Stepper, topic};
-use crate::world::World;
+use crate::test_host::TestHost;
 
 impl Stepper<'_> {
-    pub(crate) fn act(&mut self, actions: &[Action], region: ScopeId, place: &str, world: &mut World) {
+    pub(crate) fn act(&mut self, actions: &[Action], region: ScopeId, place: &str, host: &mut TestHost) {
         if actions.is_empty() {
             return;
         }
         let texts: Vec<String> = actions.iter().map(ToString::to_string).collect();
         self.line.effects.push(format!("{} ({place})", texts.join(", ")));
         for action in actions {
-            if let Err(error) = self.perform(action, region, world) {
+            if let Err(error) = self.perform(action, region, host) {
                 self.raise(self.error_event("error.action"));
-                world.say(format!("  action failed: {error}"));
+                host.say(format!("  action failed: {error}"));
             }
         }
     }
 
-    fn perform(&mut self, action: &Action, region: ScopeId, world: &mut World) -> Result<(), String> {
+    fn perform(&mut self, action: &Action, region: ScopeId, host: &mut TestHost) -> Result<(), String> {
         match &action.kind {
             ActionKind::Raise(event) => self.raise(&event.text()),
-            ActionKind::ProcessMessages => self.deliver(region, world),
+            ActionKind::ProcessMessages => self.deliver(region, host),
             ActionKind::PublishAll => {
-                world.publish_all(region);
+                host.publish_all(region);
                 self.written.remove(&region);
             }
             ActionKind::Publish(path) => {
-                world.publish(region, topic(&path.text()).unwrap());
-                self.wrote(region, world);
+                host.publish(region, topic(&path.text()).unwrap());
+                self.wrote(region, host);
             }
             ActionKind::StartTimeout { timer, delay, .. } => self.start_timer(&timer.text(), *delay, region),
             ActionKind::Assign { target, value } => {
                 let name = &target.segments[0].text;
                 let value = self
-                    .number(value, region, world)?
+                    .number(value, region, host)?
                     .ok_or("the value depends on a message that has not arrived")?;
-                world
-                    .assign(region, topic(name).unwrap(), &[FieldId(0)], Value::Int(value))
+                host.assign(region, topic(name).unwrap(), &[FieldId(0)], Value::Int(value))
                     .map_err(|error| format!("the value cannot be assigned: {error}"))?;
                 self.forgive(name, region);
-                self.wrote(region, world);
+                self.wrote(region, host);
             }
             other => panic!("the generator makes no {other:?}"),
         }
@@ -61,23 +60,23 @@ impl Stepper<'_> {
     }
 
     /// Written data is published with the step, or visible to all others at once.
-    fn wrote(&mut self, region: ScopeId, world: &mut World) {
+    fn wrote(&mut self, region: ScopeId, host: &mut TestHost) {
         self.written.insert(region);
         if self.semantics.sharing == WriteVisibility::NextStep {
             return;
         }
-        world.publish_all(region);
+        host.publish_all(region);
         self.written.remove(&region);
         for (index, node) in self.tree.regions.clone().into_iter().enumerate() {
             let other = ScopeId(index as u32);
             if other != region && self.active.contains(&node) && !self.region_runs(other) {
-                self.deliver(other, world);
+                self.deliver(other, host);
             }
         }
     }
 
-    pub(crate) fn deliver(&mut self, region: ScopeId, world: &mut World) {
-        world.deliver(region);
+    pub(crate) fn deliver(&mut self, region: ScopeId, host: &mut TestHost) {
+        host.deliver(region);
         let stale = self.stale.clone();
         self.erred.retain(|key| key.1 != region || !stale.contains(key));
         self.stale.retain(|key| key.1 != region);

@@ -4,7 +4,7 @@ use yase::statechart::{NodeId, NodeKind};
 use yase::{CompletionTrigger, Host, InitialState, RootCompletion, Statechart};
 
 use super::{Failure, Job, Phase, StaticPath, Stepper};
-use crate::world::World;
+use crate::test_host::TestHost;
 
 impl Stepper<'_> {
     /// Enters the descendants of an active composite that lead to targets, and those entered with
@@ -13,9 +13,9 @@ impl Stepper<'_> {
         &mut self,
         composite: NodeId,
         targets: &[NodeId],
-        world: &mut World,
+        host: &mut TestHost,
     ) -> Result<(), Failure> {
-        self.enter_below_from(composite, targets, None, world)
+        self.enter_below_from(composite, targets, None, host)
     }
 
     fn enter_below_from(
@@ -23,47 +23,47 @@ impl Stepper<'_> {
         composite: NodeId,
         targets: &[NodeId],
         start: Option<NodeId>,
-        world: &mut World,
+        host: &mut TestHost,
     ) -> Result<(), Failure> {
         let remembered = targets.iter().copied().find(|&target| {
             let history = matches!(self.kind(target), NodeKind::ShallowHistory | NodeKind::DeepHistory);
             history && self.parent(target) == composite
         });
         if let Some(history) = remembered {
-            return self.enter_remembered(history, start, world);
+            return self.enter_remembered(history, start, host);
         }
         let inner: Vec<NodeId> =
             targets.iter().copied().filter(|&target| self.is_inside(target, composite)).collect();
         match (self.kind(composite), inner.first()) {
-            (NodeKind::And, _) => self.enter_regions(composite, &inner, world),
-            (NodeKind::Or, None) => self.enter_start(composite, world),
+            (NodeKind::And, _) => self.enter_regions(composite, &inner, host),
+            (NodeKind::Or, None) => self.enter_start(composite, host),
             (NodeKind::Or, Some(&target)) => {
                 let child = self.child_towards(composite, target);
-                self.enter_whole(child, &inner, world)
+                self.enter_whole(child, &inner, host)
             }
             _ => Ok(()),
         }
     }
 
-    fn enter_whole(&mut self, node: NodeId, targets: &[NodeId], world: &mut World) -> Result<(), Failure> {
+    fn enter_whole(&mut self, node: NodeId, targets: &[NodeId], host: &mut TestHost) -> Result<(), Failure> {
         if self.is_ended() {
             return Ok(());
         }
-        self.enter(node, world);
-        self.enter_below(node, targets, world)
+        self.enter(node, host);
+        self.enter_below(node, targets, host)
     }
 
-    fn enter_regions(&mut self, and: NodeId, targets: &[NodeId], world: &mut World) -> Result<(), Failure> {
+    fn enter_regions(&mut self, and: NodeId, targets: &[NodeId], host: &mut TestHost) -> Result<(), Failure> {
         for &child in self.chart.children(and) {
             if self.is_region(child) && !self.active.contains(&child) {
-                self.enter_whole(child, targets, world)?;
+                self.enter_whole(child, targets, host)?;
             }
         }
         Ok(())
     }
 
     /// Entering stops at START, or goes on at once.
-    fn enter_start(&mut self, composite: NodeId, world: &mut World) -> Result<(), Failure> {
+    fn enter_start(&mut self, composite: NodeId, host: &mut TestHost) -> Result<(), Failure> {
         let mut children = self.chart.children(composite).iter().copied();
         let Some(start) = children.find(|&child| self.kind(child) == NodeKind::Start) else {
             self.vacated.insert(composite);
@@ -71,21 +71,21 @@ impl Stepper<'_> {
             return Ok(());
         };
         if self.semantics.start == InitialState::SameStep
-            && let Some(way) = self.open_way(start, world)
+            && let Some(way) = self.open_way(start, host)
         {
-            return self.go_on(&way, composite, Some(start), world);
+            return self.go_on(&way, composite, Some(start), host);
         }
-        self.enter(start, world);
+        self.enter(start, host);
         Ok(())
     }
 
     /// The way out of START or HISTORY that is open now.
-    fn open_way(&mut self, connector: NodeId, world: &mut World) -> Option<StaticPath> {
+    fn open_way(&mut self, connector: NodeId, host: &mut TestHost) -> Option<StaticPath> {
         let out = self.outgoing(connector);
         // the blackboard of the composite, also where its way leads from an AND's HISTORY into a
         // region
         let region = self.region(self.parent(connector));
-        self.first_way(connector, &out, &mut |me, way, so_far| me.all_hold(way, so_far, region, world))
+        self.first_way(connector, &out, &mut |me, way, so_far| me.all_hold(way, so_far, region, host))
     }
 
     /// `start` is the START of the current path: a HISTORY without transitions leads back to it,
@@ -95,80 +95,80 @@ impl Stepper<'_> {
         way: &StaticPath,
         composite: NodeId,
         start: Option<NodeId>,
-        world: &mut World,
+        host: &mut TestHost,
     ) -> Result<(), Failure> {
         let outer = std::mem::take(&mut self.unbound);
         self.line.taken.extend(&way.segments);
         let region = self.region(composite);
         if self.walks_segments() {
             let base = self.late.len();
-            self.walk(way, None, region, start, world)?;
+            self.walk(way, None, region, start, host)?;
             self.bind_rest(way, None);
-            self.enter_late(base, world)?;
+            self.enter_late(base, host)?;
             self.unbound = outer;
             if self.kind(composite) == NodeKind::And && !self.is_ended() {
-                self.enter_regions(composite, &[], world)?;
+                self.enter_regions(composite, &[], host)?;
             }
             let stays = !self.is_ended() && self.active_inside(composite).is_empty();
             if let Some(start) = start.filter(|&start| stays && self.parent(start) == composite) {
-                self.enter(start, world);
+                self.enter(start, host);
             }
             return Ok(());
         }
-        self.effects(&way.segments, region, world);
-        let targets = self.choose(&way.ends, region, world)?;
+        self.effects(&way.segments, region, host);
+        let targets = self.choose(&way.ends, region, host)?;
         self.bind_timers(targets.first().copied());
         self.unbound = outer;
         if self.terminates {
             return Ok(());
         }
-        self.enter_below_from(composite, &targets, start, world)
+        self.enter_below_from(composite, &targets, start, host)
     }
 
     pub(crate) fn enter_remembered(
         &mut self,
         history: NodeId,
         start: Option<NodeId>,
-        world: &mut World,
+        host: &mut TestHost,
     ) -> Result<(), Failure> {
         let owner = self.parent(history);
         let Some(record) = self.records.get(&history).cloned() else {
-            return match self.open_way(history, world) {
-                Some(way) => self.go_on(&way, owner, start, world),
+            return match self.open_way(history, host) {
+                Some(way) => self.go_on(&way, owner, start, host),
                 None if start.is_some() => {
-                    start.into_iter().for_each(|start| self.enter(start, world));
+                    start.into_iter().for_each(|start| self.enter(start, host));
                     Ok(())
                 }
-                None => self.enter_below(owner, &[], world),
+                None => self.enter_below(owner, &[], host),
             };
         };
         match (self.kind(history), self.kind(owner)) {
-            (NodeKind::DeepHistory, _) => self.enter_below(owner, &record, world),
-            (_, NodeKind::And) => self.enter_regions(owner, &[], world),
+            (NodeKind::DeepHistory, _) => self.enter_below(owner, &record, host),
+            (_, NodeKind::And) => self.enter_regions(owner, &[], host),
             _ => match record[..] {
-                [child] => self.enter_whole(child, &[], world), // START too, to rest there
+                [child] => self.enter_whole(child, &[], host), // START too, to rest there
                 _ => Ok(()),
             },
         }
     }
 
-    pub(crate) fn enter(&mut self, node: NodeId, world: &mut World) {
+    pub(crate) fn enter(&mut self, node: NodeId, host: &mut TestHost) {
         self.occupy(node);
         self.active.insert(node);
         self.line.entries.push(node);
         if self.is_region(node) {
-            world.inherit(self.region(node), self.region(self.parent(node)));
+            host.inherit(self.region(node), self.region(self.parent(node)));
         }
         let actions = self.chart.node(node).entry.clone();
         let before = std::mem::take(&mut self.unbound);
-        self.act(&actions, self.region(node), &format!("entry {}", self.name(node)), world);
+        self.act(&actions, self.region(node), &format!("entry {}", self.name(node)), host);
         let started = self.unbound.clone();
         self.bind_timers(Some(node));
         self.unbound = before;
         self.unbound.retain(|key| !started.contains(key));
         let runs = self.chart.node(node).activity.is_some();
         if self.activity_region(node) != self.region(node) {
-            world.inherit(self.activity_region(node), self.region(node));
+            host.inherit(self.activity_region(node), self.region(node));
         }
         if runs {
             self.job_count += 1;
@@ -177,7 +177,7 @@ impl Stepper<'_> {
         }
         match self.kind(node) {
             NodeKind::Basic if !runs => self.completed(node),
-            NodeKind::End => self.reached(node, world),
+            NodeKind::End => self.reached(node, host),
             _ => {}
         }
     }
@@ -190,12 +190,12 @@ impl Stepper<'_> {
         }
     }
 
-    fn reached(&mut self, end: NodeId, world: &mut World) {
+    fn reached(&mut self, end: NodeId, host: &mut TestHost) {
         let composite = self.parent(end);
         if composite == Statechart::ROOT {
             match self.semantics.root_end {
                 RootCompletion::ExitsAll => self.ended = true,
-                _ => self.halt(world),
+                _ => self.halt(host),
             }
             return;
         }

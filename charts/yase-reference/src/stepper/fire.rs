@@ -7,7 +7,7 @@ use yase::{ActivityOnExit, Host, RootCompletion, ScopeId, Statechart};
 
 use super::arrive::Arrival;
 use super::{Failure, Phase, StaticPath, Stepper};
-use crate::world::World;
+use crate::test_host::TestHost;
 
 impl Stepper<'_> {
     /// Fires one transition after the other, without those whose source an earlier one has exited,
@@ -15,7 +15,7 @@ impl Stepper<'_> {
     pub(crate) fn fire_each(
         &mut self,
         ways: Vec<StaticPath>,
-        world: &mut World,
+        host: &mut TestHost,
     ) -> Result<Vec<StaticPath>, Failure> {
         let mut fired = vec![];
         let exits: Vec<BTreeSet<NodeId>> = ways.iter().map(|way| self.exit_set(way)).collect();
@@ -24,7 +24,7 @@ impl Stepper<'_> {
         for (way, exits) in ways.into_iter().zip(exits) {
             let stays = |source: &NodeId| self.active.contains(source) && !left.contains(source);
             if self.running_chart && !self.ended && way.sources.iter().all(stays) {
-                self.fire(&way, world)?;
+                self.fire(&way, host)?;
                 left.extend(exits);
                 fired.push(way);
             } else {
@@ -40,29 +40,29 @@ impl Stepper<'_> {
         way.sources.iter().all(|source| self.active.contains(source))
     }
 
-    pub(crate) fn fire(&mut self, way: &StaticPath, world: &mut World) -> Result<(), Failure> {
+    pub(crate) fn fire(&mut self, way: &StaticPath, host: &mut TestHost) -> Result<(), Failure> {
         let early = self.ends_early(way);
         if self.walks_segments() {
-            self.walk_whole(way, early, world)?;
+            self.walk_whole(way, early, host)?;
         } else {
             let exits = self.exits_of(way, early);
-            self.leave_all(&exits, world);
-            let targets = self.effects_and_targets(way, early, world)?;
+            self.leave_all(&exits, host);
+            let targets = self.effects_and_targets(way, early, host)?;
             if !self.is_ended() {
-                self.enter_targets(way, early, &targets, world)?;
+                self.enter_targets(way, early, &targets, host)?;
             }
         }
         if self.walks_segments() && !self.is_ended() {
             self.settle(way, early);
         }
-        self.halt_if_terminated(world);
+        self.halt_if_terminated(host);
         Ok(())
     }
 
     /// R13
-    fn halt_if_terminated(&mut self, world: &mut World) {
+    fn halt_if_terminated(&mut self, host: &mut TestHost) {
         if std::mem::take(&mut self.terminates) {
-            self.halt(world);
+            self.halt(host);
         }
     }
 
@@ -75,17 +75,17 @@ impl Stepper<'_> {
     pub(crate) fn fire_phases(
         &mut self,
         ways: Vec<StaticPath>,
-        world: &mut World,
+        host: &mut TestHost,
     ) -> Result<Vec<StaticPath>, Failure> {
         let ways = self.with_their_sources(ways);
         self.taken = ways.clone();
         let early: Vec<Option<Arrival>> = ways.iter().map(|way| self.ends_early(way)).collect();
         let exits: BTreeSet<NodeId> =
             ways.iter().zip(&early).flat_map(|(way, early)| self.exits_of(way, *early)).collect();
-        self.leave_all(&exits, world);
+        self.leave_all(&exits, host);
         let (mut entering, mut stops) = (vec![], false);
         for (way, early) in ways.iter().zip(early) {
-            let targets = self.effects_and_targets(way, early, world)?;
+            let targets = self.effects_and_targets(way, early, host)?;
             match std::mem::take(&mut self.terminates) {
                 true => stops = true, // when what the others lead to has been entered
                 false => entering.push((way.clone(), early, targets)),
@@ -94,12 +94,12 @@ impl Stepper<'_> {
         entering.sort_by_key(|(way, ..)| self.position(self.scope(way)));
         for (way, early, targets) in entering {
             if !self.is_ended() {
-                self.enter_targets(&way, early, &targets, world)?;
+                self.enter_targets(&way, early, &targets, host)?;
             }
         }
         self.taken.clear();
         self.terminates |= stops;
-        self.halt_if_terminated(world);
+        self.halt_if_terminated(host);
         Ok(ways)
     }
 
@@ -135,10 +135,10 @@ impl Stepper<'_> {
         }
     }
 
-    pub(crate) fn leave_all(&mut self, exits: &BTreeSet<NodeId>, world: &mut World) {
+    pub(crate) fn leave_all(&mut self, exits: &BTreeSet<NodeId>, host: &mut TestHost) {
         self.record_histories(exits);
         for node in self.in_order_of_exit(exits) {
-            self.leave(node, world);
+            self.leave(node, host);
         }
     }
 
@@ -163,19 +163,19 @@ impl Stepper<'_> {
         }
     }
 
-    pub(crate) fn leave(&mut self, node: NodeId, world: &mut World) {
+    pub(crate) fn leave(&mut self, node: NodeId, host: &mut TestHost) {
         if let Some(job) = self.jobs.remove(&node) {
             match job.phase {
-                Phase::Ongoing => world.stop(self.activation(node, job.number)),
+                Phase::Ongoing => host.stop(self.activation(node, job.number)),
                 Phase::Running if self.semantics.on_exit == ActivityOnExit::Interrupted => {
-                    world.cancel(self.activation(node, job.number));
+                    host.cancel(self.activation(node, job.number));
                 }
                 _ => {}
             }
         }
         let actions = self.chart.node(node).exit.clone();
         let before = std::mem::take(&mut self.unbound);
-        self.act(&actions, self.region(node), &format!("exit {}", self.name(node)), world);
+        self.act(&actions, self.region(node), &format!("exit {}", self.name(node)), host);
         let started = std::mem::replace(&mut self.unbound, before); // belongs to no state
         self.unbound.retain(|key| !started.contains(key));
         self.active.remove(&node);
@@ -193,25 +193,25 @@ impl Stepper<'_> {
         &mut self,
         way: &StaticPath,
         early: Option<Arrival>,
-        world: &mut World,
+        host: &mut TestHost,
     ) -> Result<Vec<NodeId>, Failure> {
         let region = self.region(self.scope(way));
         if let Some(arrival) = early {
-            self.effects(&way.segments[..=arrival.segment], region, world);
+            self.effects(&way.segments[..=arrival.segment], region, host);
             self.bind_timers(None);
             return Ok(vec![]);
         }
-        self.effects(&way.segments, region, world);
-        let targets = self.choose(&way.ends, region, world)?;
+        self.effects(&way.segments, region, host);
+        let targets = self.choose(&way.ends, region, host)?;
         self.bind_timers(targets.first().copied());
         Ok(targets)
     }
 
-    pub(crate) fn effects(&mut self, segments: &[TransitionId], region: ScopeId, world: &mut World) {
+    pub(crate) fn effects(&mut self, segments: &[TransitionId], region: ScopeId, host: &mut TestHost) {
         for &id in segments {
             let transition = self.transition(id);
             let place = format!("{} -> {}", self.name(transition.source), self.name(transition.target));
-            self.act(&transition.expression.actions, region, &place, world);
+            self.act(&transition.expression.actions, region, &place, host);
         }
     }
 
@@ -220,7 +220,7 @@ impl Stepper<'_> {
         &mut self,
         ends: &[NodeId],
         region: ScopeId,
-        world: &mut World,
+        host: &mut TestHost,
     ) -> Result<Vec<NodeId>, Failure> {
         let mut targets = vec![];
         for &end in ends {
@@ -234,11 +234,11 @@ impl Stepper<'_> {
             }
             let out = self.outgoing(end);
             let found =
-                self.first_way(end, &out, &mut |me, way, so_far| me.all_hold(way, so_far, region, world));
+                self.first_way(end, &out, &mut |me, way, so_far| me.all_hold(way, so_far, region, host));
             let Some(way) = found else { return Err(Failure::NoBranch(end)) };
             self.line.taken.extend(&way.segments);
-            self.effects(&way.segments, region, world);
-            targets.extend(self.choose(&way.ends, region, world)?);
+            self.effects(&way.segments, region, host);
+            targets.extend(self.choose(&way.ends, region, host)?);
         }
         Ok(targets)
     }
@@ -248,11 +248,11 @@ impl Stepper<'_> {
         way: &StaticPath,
         early: Option<Arrival>,
         targets: &[NodeId],
-        world: &mut World,
+        host: &mut TestHost,
     ) -> Result<(), Failure> {
         self.settle(way, early);
         if early.is_none() && self.vacates(way).is_empty() && !self.is_targetless(way) {
-            self.enter_below(self.scope(way), targets, world)?;
+            self.enter_below(self.scope(way), targets, host)?;
         }
         Ok(())
     }
@@ -283,27 +283,27 @@ impl Stepper<'_> {
     }
 
     /// The remaining work when the root has reached its END.
-    pub(crate) fn end(&mut self, world: &mut World) {
+    pub(crate) fn end(&mut self, host: &mut TestHost) {
         if !self.ended {
             return;
         }
         self.ended = false;
         if self.semantics.root_end == RootCompletion::ExitsAll {
             for node in self.active_in_document_order().into_iter().rev() {
-                self.leave(node, world);
+                self.leave(node, host);
             }
-            self.print_finish(world);
+            self.print_finish(host);
         }
-        self.halt(world);
+        self.halt(host);
     }
 
     /// R13, and the remaining work when a chart ends.
-    pub(crate) fn halt(&mut self, world: &mut World) {
+    pub(crate) fn halt(&mut self, host: &mut TestHost) {
         for node in self.in_order_from_within() {
             let Some(job) = self.jobs.get(&node).cloned() else { continue };
             match job.phase {
-                Phase::Running if !job.cancelled => world.cancel(self.activation(node, job.number)),
-                Phase::Ongoing => world.stop(self.activation(node, job.number)),
+                Phase::Running if !job.cancelled => host.cancel(self.activation(node, job.number)),
+                Phase::Ongoing => host.stop(self.activation(node, job.number)),
                 _ => {}
             }
         }
@@ -317,13 +317,13 @@ impl Stepper<'_> {
         self.running_chart = false;
     }
 
-    pub(crate) fn begin_chart(&mut self, world: &mut World) {
+    pub(crate) fn begin_chart(&mut self, host: &mut TestHost) {
         self.begin_micro_step();
-        self.enter(Statechart::ROOT, world);
-        match self.enter_below(Statechart::ROOT, &[], world) {
+        self.enter(Statechart::ROOT, host);
+        match self.enter_below(Statechart::ROOT, &[], host) {
             Ok(()) => {
-                self.print_start(world);
-                self.halt_if_terminated(world);
+                self.print_start(host);
+                self.halt_if_terminated(host);
             }
             Err(failure) => {
                 self.active.clear();

@@ -3,7 +3,7 @@
 use yase::statechart::{NodeId, StateNames, TransitionId};
 
 use super::{Failure, Line, StaticPath, Stepper, topic};
-use crate::world::World;
+use crate::test_host::TestHost;
 
 /// The static content of a line.
 #[derive(Default)]
@@ -47,7 +47,7 @@ impl Stepper<'_> {
         }
     }
 
-    pub(crate) fn print(&mut self, heading: &Heading<'_>, world: &mut World) {
+    pub(crate) fn print(&mut self, heading: &Heading<'_>, host: &mut TestHost) {
         let idle = heading.held.is_empty() && heading.deferring.is_none();
         let selected = match (heading.fired.is_empty(), heading.event.is_some() && idle) {
             (false, _) => self.way_names(heading.fired),
@@ -64,25 +64,25 @@ impl Stepper<'_> {
         for (title, part) in parts {
             add(&mut text, title, &part);
         }
-        self.finish_line(text, world);
+        self.finish_line(text, host);
     }
 
-    pub(crate) fn print_start(&mut self, world: &mut World) {
-        self.finish_line(format!("{} start", self.now), world);
+    pub(crate) fn print_start(&mut self, host: &mut TestHost) {
+        self.finish_line(format!("{} start", self.now), host);
     }
 
-    pub(crate) fn print_finish(&mut self, world: &mut World) {
-        self.finish_line(format!("{} finish", self.now), world);
+    pub(crate) fn print_finish(&mut self, host: &mut TestHost) {
+        self.finish_line(format!("{} finish", self.now), host);
     }
 
-    fn finish_line(&mut self, mut text: String, world: &mut World) {
+    fn finish_line(&mut self, mut text: String, host: &mut TestHost) {
         let line = std::mem::take(&mut self.line);
         add(&mut text, "exit", &self.names(&line.exits));
         add(&mut text, "then", &self.chain(&line.taken));
         add(&mut text, "do", &line.effects.join(", "));
         add(&mut text, "enter", &self.names(&line.entries));
         add(&mut text, "read", &self.reads(&line));
-        world.say(text);
+        host.say(text);
     }
 
     fn reads(&self, line: &Line) -> String {

@@ -6,7 +6,7 @@ use yase::statechart::{NodeId, NodeKind, Statechart, TransitionId};
 use yase::{ActivityOnExit, CompletionTrigger, ConflictResolution, Firing, JoinMode, ScopeId};
 
 use super::{Held, Occurrence, Phase, StaticPath, Stepper};
-use crate::world::World;
+use crate::test_host::TestHost;
 
 /// What a micro-step offers to transitions.
 #[derive(Clone, Copy)]
@@ -134,13 +134,13 @@ impl<'c> Stepper<'c> {
         pending || !with_event && held
     }
 
-    pub(crate) fn judge_ways(&mut self, node: NodeId, offer: Offer<'_>, world: &mut World) -> Judgement {
+    pub(crate) fn judge_ways(&mut self, node: NodeId, offer: Offer<'_>, host: &mut TestHost) -> Judgement {
         let event = offer.event();
         if event.is_none() && self.is_frozen(node, false) {
             return Judgement::default();
         }
         let mut judgement = Judgement::default();
-        self.judge_list(node, self.outgoing(node), offer, &mut judgement, world);
+        self.judge_list(node, self.outgoing(node), offer, &mut judgement, host);
         judgement
     }
 
@@ -150,7 +150,7 @@ impl<'c> Stepper<'c> {
         list: Vec<TransitionId>,
         offer: Offer<'_>,
         judgement: &mut Judgement,
-        world: &mut World,
+        host: &mut TestHost,
     ) {
         let event = offer.event();
         let matching: Vec<TransitionId> = list
@@ -160,11 +160,11 @@ impl<'c> Stepper<'c> {
         let blocked = &mut judgement.blocked;
         judgement.found = self.first_way(node, &matching, &mut |me, way, so_far| {
             if so_far.is_some() {
-                return me.is_ready(way, offer) && me.guards_hold(way, so_far, world);
+                return me.is_ready(way, offer) && me.guards_hold(way, so_far, host);
             }
             let frozen = way.sources.iter().any(|&node| me.is_frozen(node, true));
             let locked = !me.interrupts(way) && me.is_locked(way);
-            if !me.is_ready(way, offer) || !me.guards_hold(way, None, world) {
+            if !me.is_ready(way, offer) || !me.guards_hold(way, None, host) {
                 return false;
             }
             if frozen || locked || !me.interrupts(way) && me.leaves_running(way) {
@@ -186,11 +186,11 @@ impl<'c> Stepper<'c> {
     pub(crate) fn candidates(
         &mut self,
         offer: Offer<'_>,
-        world: &mut World,
+        host: &mut TestHost,
     ) -> (Vec<StaticPath>, Vec<StaticPath>) {
         self.begin_micro_step();
         let mut search = Search::default();
-        self.visit(Statechart::ROOT, offer, &mut search, world);
+        self.visit(Statechart::ROOT, offer, &mut search, host);
         let mut found = search.found;
         if self.semantics.firing == Firing::Phases {
             found.sort_by_key(|(leaf, _)| self.position(*leaf)); // as SCXML goes through atomic states
@@ -200,18 +200,18 @@ impl<'c> Stepper<'c> {
 
     /// R7: children before their parent and, since a JOIN takes its sources only when nothing
     /// inside them can step, the content of all sources before the first of them.
-    fn visit(&mut self, node: NodeId, offer: Offer<'_>, search: &mut Search, world: &mut World) {
+    fn visit(&mut self, node: NodeId, offer: Offer<'_>, search: &mut Search, host: &mut TestHost) {
         if !search.visited.insert(node) {
             return;
         }
         let others = if offer.event().is_none() { self.joined_with(node) } else { vec![] };
         for outer in std::iter::once(node).chain(others) {
             for &child in self.chart.children(outer) {
-                self.visit(child, offer, search, world);
+                self.visit(child, offer, search, host);
             }
         }
         if self.active.contains(&node) {
-            self.consider(node, offer, search, world);
+            self.consider(node, offer, search, host);
         }
     }
 
@@ -226,7 +226,7 @@ impl<'c> Stepper<'c> {
     }
 
     /// A state contributes if from some active leaf outward nothing has been found yet.
-    fn consider(&mut self, node: NodeId, offer: Offer<'_>, search: &mut Search, world: &mut World) {
+    fn consider(&mut self, node: NodeId, offer: Offer<'_>, search: &mut Search, host: &mut TestHost) {
         let leaves = self.leaves_in(node);
         let Some(&open) = leaves.difference(&self.closed).min_by_key(|&&leaf| self.position(leaf)) else {
             return;
@@ -236,7 +236,7 @@ impl<'c> Stepper<'c> {
         {
             return;
         }
-        let Judgement { found, blocked } = self.judge_ways(node, offer, world);
+        let Judgement { found, blocked } = self.judge_ways(node, offer, host);
         if let Some(way) = blocked.filter(|_| offer.event().is_some())
             && !leaves.is_subset(&search.noted)
         {

@@ -7,7 +7,7 @@ use yase::{Deferral, Delivery, EventMatching, EventPool, FailureEvents, Firing, 
 use super::lines::Heading;
 use super::select::Offer;
 use super::{Failure, Held, Line, Occurrence, Phase, StaticPath, Stepper};
-use crate::world::World;
+use crate::test_host::TestHost;
 
 impl Stepper<'_> {
     pub(crate) fn raise(&mut self, event: &str) {
@@ -40,11 +40,11 @@ impl Stepper<'_> {
         if self.raises_every_error() { "error.execution" } else { otherwise }
     }
 
-    pub(crate) fn whole_step(&mut self, world: &mut World) -> Result<(), Failure> {
-        self.begin(world);
+    pub(crate) fn whole_step(&mut self, host: &mut TestHost) -> Result<(), Failure> {
+        self.begin(host);
         loop {
             self.before = self.active.clone();
-            match self.micro_step(world) {
+            match self.micro_step(host) {
                 Ok(true) => {}
                 Ok(false) => break,
                 Err(failure) => {
@@ -53,11 +53,11 @@ impl Stepper<'_> {
                 }
             }
         }
-        self.finish(world);
+        self.finish(host);
         Ok(())
     }
 
-    fn begin(&mut self, world: &mut World) {
+    fn begin(&mut self, host: &mut TestHost) {
         self.due = false;
         self.micro_steps = 0;
         self.did_something = false;
@@ -78,7 +78,7 @@ impl Stepper<'_> {
         for (index, node) in self.tree.regions.clone().into_iter().enumerate() {
             let region = ScopeId(index as u32);
             if self.active.contains(&node) && !self.region_runs(region) {
-                self.deliver(region, world);
+                self.deliver(region, host);
             }
         }
     }
@@ -134,27 +134,27 @@ impl Stepper<'_> {
         }
     }
 
-    fn micro_step(&mut self, world: &mut World) -> Result<bool, Failure> {
+    fn micro_step(&mut self, host: &mut TestHost) -> Result<bool, Failure> {
         if let Some(failure) = self.failure.take() {
             return Err(failure);
         }
         if !self.running_chart || self.ended {
             return Ok(false);
         }
-        if self.interrupt_something(world)? {
+        if self.interrupt_something(host)? {
             return Ok(true);
         }
         if let Some(index) = self.held.iter().position(|held| held.offer) {
             let occurrence = self.held.remove(index).occurrence;
-            return self.offer(occurrence, world);
+            return self.offer(occurrence, host);
         }
-        if self.complete_something(world)? {
+        if self.complete_something(host)? {
             return Ok(true);
         }
-        let (candidates, _) = self.candidates(Offer::Nothing, world);
+        let (candidates, _) = self.candidates(Offer::Nothing, host);
         if !candidates.is_empty() {
             self.admit()?;
-            self.take(candidates, None, world)?;
+            self.take(candidates, None, host)?;
             return Ok(true);
         }
         self.recall();
@@ -163,17 +163,17 @@ impl Stepper<'_> {
             true if self.arrived.is_empty() => return Ok(false),
             true => self.arrived.remove(0),
         };
-        self.offer(next, world)
+        self.offer(next, host)
     }
 
     /// R15, `once`: completions before what is new; one that finds nothing open is consumed.
-    fn complete_something(&mut self, world: &mut World) -> Result<bool, Failure> {
+    fn complete_something(&mut self, host: &mut TestHost) -> Result<bool, Failure> {
         while !self.completions.is_empty() {
             let node = self.completions.remove(0);
             self.begin_micro_step(); // what one that is consumed has read is not reported
-            if let Some(way) = self.judge_ways(node, Offer::Completion, world).found {
+            if let Some(way) = self.judge_ways(node, Offer::Completion, host).found {
                 self.admit()?;
-                self.take(vec![way], None, world)?;
+                self.take(vec![way], None, host)?;
                 return Ok(true);
             }
         }
@@ -191,7 +191,7 @@ impl Stepper<'_> {
     }
 
     /// An interruption whose activities have returned.
-    fn interrupt_something(&mut self, world: &mut World) -> Result<bool, Failure> {
+    fn interrupt_something(&mut self, host: &mut TestHost) -> Result<bool, Failure> {
         let Some(index) = self.pending.iter().position(|(way, _)| !self.leaves_running(way)) else {
             return Ok(false);
         };
@@ -199,14 +199,14 @@ impl Stepper<'_> {
         let (way, event) = self.pending.remove(index);
         self.begin_micro_step();
         self.taken = vec![way.clone()];
-        self.fire(&way, world)?;
+        self.fire(&way, host)?;
         self.taken.clear();
         let pending = std::mem::take(&mut self.pending);
         self.pending = pending.into_iter().filter(|(way, _)| self.may_fire(way)).collect();
         for held in &mut self.held {
             held.offer = true;
         }
-        self.print(&Heading { event: event.as_deref(), fired: &[way], ..Heading::default() }, world);
+        self.print(&Heading { event: event.as_deref(), fired: &[way], ..Heading::default() }, host);
         Ok(true)
     }
 
@@ -240,29 +240,29 @@ impl Stepper<'_> {
         Ok(())
     }
 
-    fn offer(&mut self, occurrence: Occurrence, world: &mut World) -> Result<bool, Failure> {
+    fn offer(&mut self, occurrence: Occurrence, host: &mut TestHost) -> Result<bool, Failure> {
         self.admit()?;
-        let (candidates, waiting) = self.candidates(Offer::Event(&occurrence), world);
+        let (candidates, waiting) = self.candidates(Offer::Event(&occurrence), host);
         let event = occurrence.event.clone();
         let heading = Heading { event: Some(&event), ..Heading::default() };
         let found = if candidates.is_empty() { &waiting } else { &candidates };
         if let Some(claimant) = self.claimant(&event, found) {
             self.defer(occurrence);
-            self.print(&Heading { deferring: Some(claimant), ..heading }, world);
+            self.print(&Heading { deferring: Some(claimant), ..heading }, host);
             return Ok(true);
         }
         if !candidates.is_empty() {
-            self.take(candidates, Some(&event), world)?;
+            self.take(candidates, Some(&event), host)?;
         } else if !waiting.is_empty() {
             self.held.push(Held { occurrence, ways: waiting.clone(), offer: false });
             self.held.sort_by_key(|held| held.occurrence.number);
-            self.print(&Heading { held: &waiting, ..heading }, world);
+            self.print(&Heading { held: &waiting, ..heading }, host);
         } else {
             let deferring = self.deferring(&event);
             if deferring.is_some() {
                 self.defer(occurrence);
             }
-            self.print(&Heading { deferring, ..heading }, world);
+            self.print(&Heading { deferring, ..heading }, host);
         }
         Ok(true)
     }
@@ -314,7 +314,7 @@ impl Stepper<'_> {
         &mut self,
         candidates: Vec<StaticPath>,
         event: Option<&str>,
-        world: &mut World,
+        host: &mut TestHost,
     ) -> Result<(), Failure> {
         let (winners, losers) = self.resolve(candidates);
         let (mut now, mut later) = (vec![], vec![]);
@@ -322,7 +322,7 @@ impl Stepper<'_> {
             if self.leaves_running(&way) {
                 for node in self.in_order_from_within() {
                     if self.would_leave(&way, node) {
-                        self.cancel(node, world);
+                        self.cancel(node, host);
                     }
                 }
                 self.pending.push((way.clone(), event.map(str::to_owned)));
@@ -332,14 +332,14 @@ impl Stepper<'_> {
             }
         }
         let fired = match self.semantics.firing {
-            Firing::Phases => self.fire_phases(now, world)?,
-            _ => self.fire_each(now, world)?,
+            Firing::Phases => self.fire_phases(now, host)?,
+            _ => self.fire_each(now, host)?,
         };
-        self.print(&Heading { event, fired: &fired, losers: &losers, held: &later, deferring: None }, world);
+        self.print(&Heading { event, fired: &fired, losers: &losers, held: &later, deferring: None }, host);
         Ok(())
     }
 
-    fn cancel(&mut self, node: NodeId, world: &mut World) {
+    fn cancel(&mut self, node: NodeId, host: &mut TestHost) {
         if !self.runs(node) {
             return;
         }
@@ -347,23 +347,23 @@ impl Stepper<'_> {
         let (is_new, phase, number) = (!job.cancelled, job.phase, job.number);
         job.cancelled = true;
         if is_new && phase == Phase::Running {
-            world.cancel(self.activation(node, number));
+            host.cancel(self.activation(node, number));
         }
     }
 
-    fn finish(&mut self, world: &mut World) {
-        self.end(world);
+    fn finish(&mut self, host: &mut TestHost) {
+        self.end(host);
         for region in std::mem::take(&mut self.written) {
-            world.publish_all(region);
+            host.publish_all(region);
         }
         for node in self.in_order_from_within() {
             let Some(job) = self.jobs.get_mut(&node) else { continue };
             if job.phase == Phase::Queued {
                 job.phase = Phase::Running;
                 let (number, cancelled) = (job.number, job.cancelled);
-                world.start(self.activation(node, number));
+                host.start(self.activation(node, number));
                 if cancelled {
-                    world.cancel(self.activation(node, number));
+                    host.cancel(self.activation(node, number));
                 }
             }
         }
@@ -374,7 +374,7 @@ impl Stepper<'_> {
             let is_new = !self.waiting.contains(&node) && !self.is_frozen(node, false);
             if self.kind(node) == NodeKind::Start && is_new {
                 self.waiting.insert(node);
-                world.say(format!("  waits at {}", self.name(node)));
+                host.say(format!("  waits at {}", self.name(node)));
             }
         }
     }

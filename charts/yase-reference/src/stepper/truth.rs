@@ -5,7 +5,7 @@ use yase::statechart::TransitionId;
 use yase::{EventMatching, ScopeId};
 
 use super::{Occurrence, StaticPath, Stepper, topic};
-use crate::world::World;
+use crate::test_host::TestHost;
 
 impl Stepper<'_> {
     pub(crate) fn expression(&self, id: TransitionId) -> &TransitionExpression {
@@ -33,9 +33,14 @@ impl Stepper<'_> {
     }
 
     /// R5: on the blackboard of the scope.
-    pub(crate) fn guards_hold(&mut self, way: &StaticPath, so_far: Option<usize>, world: &mut World) -> bool {
+    pub(crate) fn guards_hold(
+        &mut self,
+        way: &StaticPath,
+        so_far: Option<usize>,
+        host: &mut TestHost,
+    ) -> bool {
         let region = self.region(self.scope(way));
-        self.all_hold(way, so_far, region, world)
+        self.all_hold(way, so_far, region, host)
     }
 
     pub(crate) fn all_hold(
@@ -43,18 +48,18 @@ impl Stepper<'_> {
         way: &StaticPath,
         so_far: Option<usize>,
         region: ScopeId,
-        world: &mut World,
+        host: &mut TestHost,
     ) -> bool {
         let segments = &way.segments[..so_far.unwrap_or(way.segments.len())];
-        segments.iter().all(|&id| self.holds(id, region, world))
+        segments.iter().all(|&id| self.holds(id, region, host))
     }
 
-    fn holds(&mut self, id: TransitionId, region: ScopeId, world: &mut World) -> bool {
+    fn holds(&mut self, id: TransitionId, region: ScopeId, host: &mut TestHost) -> bool {
         let Some(guard) = self.expression(id).guard.clone() else { return true };
         if self.expression(id).is_never() {
             return false; // nothing is read
         }
-        match self.truth(&guard, region, world) {
+        match self.truth(&guard, region, host) {
             Ok(value) => {
                 self.erred.remove(&(id, region));
                 self.line.reads.push((id, Some(value == Some(true))));
@@ -68,7 +73,7 @@ impl Stepper<'_> {
                 }
                 if (is_new || self.raises_every_error()) && self.reported.insert(id) {
                     self.raise(self.error_event("error.guard"));
-                    world.say(format!("  guard failed: {error}"));
+                    host.say(format!("  guard failed: {error}"));
                 }
                 false
             }
@@ -80,14 +85,14 @@ impl Stepper<'_> {
         &self,
         expression: &Expression,
         region: ScopeId,
-        world: &World,
+        host: &TestHost,
     ) -> Result<Option<bool>, String> {
         Ok(match &expression.kind {
             ExpressionKind::Bool(value) => Some(*value),
             ExpressionKind::And(parts) => {
                 let mut unknown = false;
                 for part in parts {
-                    match self.truth(part, region, world)? {
+                    match self.truth(part, region, host)? {
                         Some(false) => return Ok(Some(false)),
                         Some(true) => {}
                         None => unknown = true,
@@ -98,7 +103,7 @@ impl Stepper<'_> {
             ExpressionKind::Or(parts) => {
                 let mut unknown = false;
                 for part in parts {
-                    match self.truth(part, region, world)? {
+                    match self.truth(part, region, host)? {
                         Some(true) => return Ok(Some(true)),
                         Some(false) => {}
                         None => unknown = true,
@@ -106,9 +111,9 @@ impl Stepper<'_> {
                 }
                 if unknown { None } else { Some(false) }
             }
-            ExpressionKind::Not(part) => self.truth(part, region, world)?.map(|value| !value),
+            ExpressionKind::Not(part) => self.truth(part, region, host)?.map(|value| !value),
             ExpressionKind::Compare(left, comparison, right) => {
-                let (left, right) = (self.number(left, region, world)?, self.number(right, region, world)?);
+                let (left, right) = (self.number(left, region, host)?, self.number(right, region, host)?);
                 match (left, right) {
                     (Some(left), Some(right)) => Some(match comparison {
                         Comparison::Equal => left == right,
@@ -121,8 +126,8 @@ impl Stepper<'_> {
                     _ => None,
                 }
             }
-            ExpressionKind::Absent(path) => Some(self.message(&path.text(), region, world).is_none()),
-            ExpressionKind::Present(path) => Some(self.message(&path.text(), region, world).is_some()),
+            ExpressionKind::Absent(path) => Some(self.message(&path.text(), region, host).is_none()),
+            ExpressionKind::Present(path) => Some(self.message(&path.text(), region, host).is_some()),
             ExpressionKind::Variable(path) => Some(self.is_over(&path.text(), region).unwrap_or(true)),
             ExpressionKind::TimeoutCheck(path) => Some(self.is_over(&path.text(), region).unwrap_or(false)),
             ExpressionKind::In(name) => Some(self.active.contains(&self.chart.find(&name.text).unwrap())),
@@ -134,15 +139,15 @@ impl Stepper<'_> {
         &self,
         expression: &Expression,
         region: ScopeId,
-        world: &World,
+        host: &TestHost,
     ) -> Result<Option<i64>, String> {
         Ok(match &expression.kind {
             ExpressionKind::Integer(value) => Some(*value as i64),
-            ExpressionKind::Variable(path) => self.message(&path.segments[0].text, region, world),
+            ExpressionKind::Variable(path) => self.message(&path.segments[0].text, region, host),
             ExpressionKind::Sum(first, rest) => {
-                let mut sum = self.number(first, region, world)?;
+                let mut sum = self.number(first, region, host)?;
                 for (_, part) in rest {
-                    sum = sum.zip(self.number(part, region, world)?).map(|(a, b)| a + b);
+                    sum = sum.zip(self.number(part, region, host)?).map(|(a, b)| a + b);
                 }
                 sum
             }
@@ -153,8 +158,8 @@ impl Stepper<'_> {
         })
     }
 
-    pub(crate) fn message(&self, name: &str, region: ScopeId, world: &World) -> Option<i64> {
-        world.number(region, topic(name).unwrap())
+    pub(crate) fn message(&self, name: &str, region: ScopeId, host: &TestHost) -> Option<i64> {
+        host.number(region, topic(name).unwrap())
     }
 
     pub(crate) fn is_over(&self, timer: &str, region: ScopeId) -> Option<bool> {

@@ -7,7 +7,7 @@ use yase::{ScopeId, TerminateExit};
 
 use super::arrive::Arrival;
 use super::{Failure, StaticPath, Stepper};
-use crate::world::World;
+use crate::test_host::TestHost;
 
 impl Stepper<'_> {
     /// Takes a way from a state, and then enters the regions to which nothing has led.
@@ -15,13 +15,13 @@ impl Stepper<'_> {
         &mut self,
         way: &StaticPath,
         early: Option<Arrival>,
-        world: &mut World,
+        host: &mut TestHost,
     ) -> Result<(), Failure> {
         let region = self.region(self.scope(way));
         let base = self.late.len();
-        self.walk(way, early, region, None, world)?;
+        self.walk(way, early, region, None, host)?;
         self.bind_rest(way, early);
-        self.enter_late(base, world)
+        self.enter_late(base, host)
     }
 
     /// Timers that were started after the last target was entered belong to the first one.
@@ -32,14 +32,14 @@ impl Stepper<'_> {
     }
 
     /// The other regions of the ANDs that were entered on the way.
-    pub(crate) fn enter_late(&mut self, base: usize, world: &mut World) -> Result<(), Failure> {
+    pub(crate) fn enter_late(&mut self, base: usize, host: &mut TestHost) -> Result<(), Failure> {
         let late = self.late.split_off(base);
         for and in late {
             for &region in self.chart.children(and) {
                 let missing = self.is_region(region) && !self.active.contains(&region);
                 if missing && self.active.contains(&and) && !self.is_ended() {
-                    self.enter(region, world);
-                    self.enter_below(region, &[], world)?;
+                    self.enter(region, host);
+                    self.enter_below(region, &[], host)?;
                 }
             }
         }
@@ -53,15 +53,15 @@ impl Stepper<'_> {
         early: Option<Arrival>,
         region: ScopeId,
         start: Option<NodeId>,
-        world: &mut World,
+        host: &mut TestHost,
     ) -> Result<(), Failure> {
         let count = early.map_or(way.segments.len(), |arrival| arrival.segment + 1);
         for index in 0..count {
-            self.leave_by_segment(way, index, early, world);
-            self.effects(&way.segments[index..=index], region, world);
+            self.leave_by_segment(way, index, early, host);
+            self.effects(&way.segments[index..=index], region, host);
             let stops = early.is_some_and(|arrival| arrival.segment == index);
             if !stops {
-                self.enter_by_segment(way, index, region, start, world)?;
+                self.enter_by_segment(way, index, region, start, host)?;
             }
             if self.is_ended() {
                 break;
@@ -134,7 +134,7 @@ impl Stepper<'_> {
         way: &StaticPath,
         index: usize,
         early: Option<Arrival>,
-        world: &mut World,
+        host: &mut TestHost,
     ) {
         let exits = self.exits_by_segment(way, index, early);
         let (_, target) = self.ends_of(way, index);
@@ -142,7 +142,7 @@ impl Stepper<'_> {
         if self.kind(target) == NodeKind::ExitPoint && arrival.is_none() && !exits.is_empty() {
             self.record_histories(&BTreeSet::from([self.parent(target)]));
         }
-        self.leave_all(&exits, world);
+        self.leave_all(&exits, host);
     }
 
     fn exits_by_segment(&self, way: &StaticPath, index: usize, early: Option<Arrival>) -> BTreeSet<NodeId> {
@@ -200,7 +200,7 @@ impl Stepper<'_> {
         index: usize,
         region: ScopeId,
         start: Option<NodeId>,
-        world: &mut World,
+        host: &mut TestHost,
     ) -> Result<(), Failure> {
         let (source, target) = self.ends_of(way, index);
         let last = index + 1 == way.segments.len();
@@ -215,44 +215,44 @@ impl Stepper<'_> {
         match self.kind(target) {
             NodeKind::Terminate => {
                 if self.semantics.terminate == TerminateExit::Source {
-                    self.enter_down(border, self.stand(target), world);
+                    self.enter_down(border, self.stand(target), host);
                 }
                 self.terminates = true;
                 Ok(())
             }
             NodeKind::Join => {
                 if !self.joined_on(way).is_some_and(|and| self.is_inside(target, and)) {
-                    self.enter_down(border, self.stand(target), world);
+                    self.enter_down(border, self.stand(target), host);
                 }
                 Ok(())
             }
             NodeKind::ExitPoint => {
                 let above = self.lowest_around(&[self.parent(target)], |kind| kind == NodeKind::Or);
-                self.enter_down(border, above, world);
+                self.enter_down(border, above, host);
                 Ok(())
             }
             NodeKind::EntryPoint if self.stands_for_composite(target) => {
-                self.enter_target(border, self.parent(target), world)
+                self.enter_target(border, self.parent(target), host)
             }
             NodeKind::EntryPoint if !self.leads_inside(way, index) => {
-                self.enter_target(border, self.parent(target), world)
+                self.enter_target(border, self.parent(target), host)
             }
             NodeKind::ShallowHistory | NodeKind::DeepHistory => {
                 let owner = self.parent(target);
-                self.enter_down(border, owner, world);
+                self.enter_down(border, owner, host);
                 self.bind_timers(Some(target));
                 if self.is_ended() {
                     return Ok(());
                 }
-                self.enter_remembered(target, start.filter(|&start| self.parent(start) == owner), world)
+                self.enter_remembered(target, start.filter(|&start| self.parent(start) == owner), host)
             }
             NodeKind::Choice => {
-                self.enter_down(border, self.stand(target), world);
-                self.choose_segment(target, region, start, world)
+                self.enter_down(border, self.stand(target), host);
+                self.choose_segment(target, region, start, host)
             }
-            _ if self.is_state(target) => self.enter_target(border, target, world),
+            _ if self.is_state(target) => self.enter_target(border, target, host),
             _ => {
-                self.enter_down(border, self.stand(target), world);
+                self.enter_down(border, self.stand(target), host);
                 Ok(())
             }
         }
@@ -271,30 +271,30 @@ impl Stepper<'_> {
         choice: NodeId,
         region: ScopeId,
         start: Option<NodeId>,
-        world: &mut World,
+        host: &mut TestHost,
     ) -> Result<(), Failure> {
         if self.is_ended() {
             return Ok(());
         }
         let out = self.outgoing(choice);
         let found =
-            self.first_way(choice, &out, &mut |me, way, so_far| me.all_hold(way, so_far, region, world));
+            self.first_way(choice, &out, &mut |me, way, so_far| me.all_hold(way, so_far, region, host));
         let Some(way) = found else { return Err(Failure::NoBranch(choice)) };
         self.line.taken.extend(&way.segments);
-        self.walk(&way, None, region, start, world)
+        self.walk(&way, None, region, start, host)
     }
 
-    fn enter_target(&mut self, border: NodeId, target: NodeId, world: &mut World) -> Result<(), Failure> {
+    fn enter_target(&mut self, border: NodeId, target: NodeId, host: &mut TestHost) -> Result<(), Failure> {
         self.bind_timers(Some(target));
-        self.enter_down(border, target, world);
+        self.enter_down(border, target, host);
         if self.is_ended() {
             return Ok(());
         }
-        self.enter_below(target, &[], world)
+        self.enter_below(target, &[], host)
     }
 
     /// Enters what is not active on the way down from inside a composite to a node.
-    fn enter_down(&mut self, border: NodeId, node: NodeId, world: &mut World) {
+    fn enter_down(&mut self, border: NodeId, node: NodeId, host: &mut TestHost) {
         let mut path = self.outward(node);
         path.retain(|&it| self.is_inside(it, border));
         path.reverse();
@@ -305,7 +305,7 @@ impl Stepper<'_> {
             if self.active.contains(&it) || self.is_ended() {
                 continue;
             }
-            self.enter(it, world);
+            self.enter(it, host);
             if self.kind(it) == NodeKind::And {
                 self.late.push(it);
             }

@@ -3,7 +3,7 @@
 use yase::{Chooser, CompletionTrigger, Firing, JoinMode, Machine, TransitionToAncestor};
 
 use crate::{check_with, with};
-use yase_reference::world::World;
+use yase_reference::test_host::TestHost;
 use yase_reference::{chart, script};
 
 /// `one` is complete without an active child, and can arrive when the AND is left and entered
@@ -87,8 +87,8 @@ fn draws(join: JoinMode) -> Vec<u32> {
     });
     let mut machine = Machine::new(script::compile_with(&chart, semantics));
     machine.set_chooser(Chooser::scripted(vec![0]));
-    let mut world = World::new(&chart);
-    script::run(&mut machine, &script::Script::parse("1"), &mut world);
+    let mut host = TestHost::new(&chart);
+    script::run(&mut machine, &script::Script::parse("1"), &mut host);
     machine.chooser().choices().iter().map(|&(_, of)| of).collect()
 }
 

@@ -3,7 +3,7 @@
 use yase::{Chooser, ConflictResolution, Machine, Semantics};
 
 use crate::refusal;
-use yase_reference::World;
+use yase_reference::TestHost;
 use yase_reference::{chart, script};
 
 const WEIGHTS: &str = "
@@ -33,8 +33,8 @@ fn reached(
     let run = |choices: &&[u32]| {
         let mut machine = Machine::new(script::compile_with(&chart, semantics));
         machine.set_chooser(Chooser::scripted(choices.to_vec()));
-        let mut world = World::new(&chart);
-        script::run(&mut machine, &script::Script::parse(script_text), &mut world);
+        let mut host = TestHost::new(&chart);
+        script::run(&mut machine, &script::Script::parse(script_text), &mut host);
         let leaf = machine.configuration().pop().unwrap();
         (machine.chart().short_path(leaf), machine.chooser().choices().to_vec())
     };
@@ -96,10 +96,10 @@ fn r22_declared_takes_weighted_segments_in_their_order_and_seeds_draw_in_proport
     let seldom = |chooser: Chooser| {
         let mut machine = Machine::new(script::compile(&chart));
         machine.set_chooser(chooser);
-        let mut world = World::new(&chart);
+        let mut host = TestHost::new(&chart);
         let events: Vec<String> = (1..=400).map(|time| format!("{time} e")).collect();
-        script::run(&mut machine, &script::Script::parse(&events.join(";")), &mut world);
-        world.log.iter().filter(|line| line.contains("seldom: dropped")).count()
+        script::run(&mut machine, &script::Script::parse(&events.join(";")), &mut host);
+        host.log.iter().filter(|line| line.contains("seldom: dropped")).count()
     };
     assert_eq!(seldom(Chooser::declared()), 0);
     let drawn = seldom(Chooser::seeded(1));
@@ -361,8 +361,8 @@ fn r22_what_was_drawn_in_vain_is_not_drawn_for_the_next_with_a_weight() {
     let chart = chart(text);
     let mut machine = Machine::new(script::compile(&chart));
     machine.set_chooser(Chooser::scripted(vec![1]));
-    let mut world = World { reads: true, ..World::new(&chart) };
-    script::run(&mut machine, &script::Script::parse("1 A=0; 2 e; 3"), &mut world);
+    let mut host = TestHost { reads: true, ..TestHost::new(&chart) };
+    script::run(&mut machine, &script::Script::parse("1 A=0; 2 e; 3"), &mut host);
     let expected = "0.002 s e: A -> c -> D; exit A; enter D; read c -> C = false, c -> B = false";
-    crate::compare(&world.log[2..], expected);
+    crate::compare(&host.log[2..], expected);
 }

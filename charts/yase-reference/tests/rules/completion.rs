@@ -6,7 +6,7 @@ use std::time::Duration;
 use yase::{CompletionTrigger, Deferral, Machine, MachineErrorKind, Semantics, Status, Timestamp};
 
 use crate::{check, check_with, compare};
-use yase_reference::world::World;
+use yase_reference::test_host::TestHost;
 use yase_reference::{chart, script};
 
 #[test]
@@ -344,20 +344,20 @@ fn limited(limit: u32) -> Semantics {
 fn r17_a_chart_that_never_rests_stops_with_an_error_that_names_the_cycle() {
     let chart = chart("START\nS\nA\nB\nc/START -> S\nS -> A : e\nA -> B\nB -> A : [true]\n");
     let mut machine = Machine::new(script::compile_with(&chart, limited(10)));
-    let mut world = World::new(&chart);
-    machine.start(Timestamp::ZERO, &mut world);
-    machine.run_to_completion(Timestamp::ZERO, &mut world).unwrap();
+    let mut host = TestHost::new(&chart);
+    machine.start(Timestamp::ZERO, &mut host);
+    machine.run_to_completion(Timestamp::ZERO, &mut host).unwrap();
     machine.dispatch_name("e");
-    let error = machine.run_to_completion(Timestamp::ZERO, &mut world).unwrap_err();
+    let error = machine.run_to_completion(Timestamp::ZERO, &mut host).unwrap_err();
     assert_eq!(error.kind(), MachineErrorKind::NeverRests);
     let text = error.to_string();
     assert!(text.starts_with("the chart does not come to rest in 10 micro-steps: it repeats"), "{text}");
     assert!(text.contains("`A` -> `B`") && text.contains("`B` -> `A`"), "{text}");
     assert_eq!(machine.status(), Status::Stopped);
-    assert_eq!(world.log.iter().filter(|line| line.contains("exit")).count(), 11, "START and ten more");
+    assert_eq!(host.log.iter().filter(|line| line.contains("exit")).count(), 11, "START and ten more");
     // the configuration before the micro-step that would have been one too many
     assert!(machine.is_active(chart::find(&chart, "B")), "{:?}", machine.configuration());
-    assert_eq!(machine.run_to_completion(Timestamp::ZERO, &mut world).unwrap().micro_steps, 0);
+    assert_eq!(machine.run_to_completion(Timestamp::ZERO, &mut host).unwrap().micro_steps, 0);
 }
 
 #[test]
@@ -405,19 +405,19 @@ fn r17_a_chart_that_steps_for_ever_at_one_moment_is_stopped() {
 fn r17_steps_at_one_moment_are_counted_whoever_looks_on_and_anew_when_time_passes_or_the_chart_starts() {
     let chart = chart("START\nA\nB\nc/START -> A\nA -> B : e\nB -> A : e\n");
     for silent in [false, true] {
-        let mut world = World { silent, ..World::new(&chart) };
+        let mut host = TestHost { silent, ..TestHost::new(&chart) };
         let mut machine = Machine::new(script::compile_with(&chart, limited(3)));
         let mut steps = |machine: &mut Machine, now: Timestamp, count: usize| {
             for _ in 0..count {
                 machine.dispatch_name("e");
-                let summary = machine.run_to_completion(now, &mut world)?;
+                let summary = machine.run_to_completion(now, &mut host)?;
                 assert_eq!((summary.micro_steps, summary.transitions), (1, 1));
             }
             Ok::<(), yase::MachineError>(())
         };
         for start in [Timestamp::ZERO, Timestamp::from_millis(1)] {
-            machine.start(start, &mut World::new(&chart));
-            machine.run_to_completion(start, &mut World::new(&chart)).unwrap();
+            machine.start(start, &mut TestHost::new(&chart));
+            machine.run_to_completion(start, &mut TestHost::new(&chart)).unwrap();
             steps(&mut machine, start, 2).unwrap();
             steps(&mut machine, start + Duration::from_millis(1), 3).unwrap();
             let error = steps(&mut machine, start + Duration::from_millis(1), 1).unwrap_err();
@@ -432,12 +432,12 @@ fn r17_a_step_may_offer_as_many_events_as_it_may_have_micro_steps() {
     let chart = chart("START\nA\nB\nc/START -> A\nA -> B : e\nB -> A : e\n");
     for silent in [false, true] {
         for (events, limit) in [(4, 4), (5, 4)] {
-            let mut world = World { silent, ..World::new(&chart) };
+            let mut host = TestHost { silent, ..TestHost::new(&chart) };
             let mut machine = Machine::new(script::compile_with(&chart, limited(limit)));
-            machine.start(Timestamp::ZERO, &mut world);
-            machine.run_to_completion(Timestamp::ZERO, &mut world).unwrap();
+            machine.start(Timestamp::ZERO, &mut host);
+            machine.run_to_completion(Timestamp::ZERO, &mut host).unwrap();
             (0..events).for_each(|_| machine.dispatch(chart_event(&machine)));
-            let found = machine.run_to_completion(Timestamp::from_millis(1), &mut world);
+            let found = machine.run_to_completion(Timestamp::from_millis(1), &mut host);
             match found {
                 Ok(summary) => assert_eq!((events, summary.transitions), (4, 4)),
                 Err(error) => assert_eq!((events, error.kind()), (5, MachineErrorKind::NeverRests)),

@@ -3,7 +3,7 @@
 use yase::{Delivery, Semantics};
 
 use crate::{check, check_with, compare};
-use yase_reference::world::World;
+use yase_reference::test_host::TestHost;
 use yase_reference::{chart, script};
 
 /// Plays a script and gives every line, with those of the blackboards, of a chart whose text begins
@@ -11,9 +11,9 @@ use yase_reference::{chart, script};
 pub(crate) fn verbose(text: &str, script: &str, semantics: Semantics) -> Vec<String> {
     let chart = chart(text);
     let mut machine = yase::Machine::new(script::compile_with(&chart, semantics));
-    let mut world = World { verbose: true, ..World::new(&chart) };
-    script::run(&mut machine, &script::Script::parse(script), &mut world);
-    world.log
+    let mut host = TestHost { verbose: true, ..TestHost::new(&chart) };
+    script::run(&mut machine, &script::Script::parse(script), &mut host);
+    host.log
 }
 
 const REGIONS: &str = "
@@ -314,20 +314,20 @@ fn r20_a_failing_activity_releases_the_lock_and_can_run_again() {
     use yase::{Machine, Outcome, Timestamp};
     let chart = chart("START\nS | run\nT\nc/START -> S\nS -> T\nS -> S {internal} : error.activity\n");
     let mut machine = Machine::new(script::compile(&chart));
-    let mut world = World::new(&chart);
-    machine.start(Timestamp::ZERO, &mut world);
-    machine.run_to_completion(Timestamp::ZERO, &mut world).unwrap();
-    let activation = world.jobs[0].activation;
+    let mut host = TestHost::new(&chart);
+    machine.start(Timestamp::ZERO, &mut host);
+    machine.run_to_completion(Timestamp::ZERO, &mut host).unwrap();
+    let activation = host.jobs[0].activation;
     assert!(machine.is_running(activation.region));
     assert!(machine.activity_returned(activation, Outcome::Failed));
     assert!(!machine.is_running(activation.region));
-    machine.run_to_completion(Timestamp::ZERO, &mut world).unwrap();
-    assert_eq!(world.log.last().unwrap(), "0.000 s error.activity: S -> S");
+    machine.run_to_completion(Timestamp::ZERO, &mut host).unwrap();
+    assert_eq!(host.log.last().unwrap(), "0.000 s error.activity: S -> S");
     assert!(machine.activity_resumed(activation) && machine.is_running(activation.region));
     assert!(!machine.activity_resumed(activation), "it runs already");
     assert!(machine.activity_returned(activation, Outcome::Done));
-    machine.run_to_completion(Timestamp::ZERO, &mut world).unwrap();
-    assert_eq!(world.log.last().unwrap(), "0.000 s -: S -> T; exit S; enter T");
+    machine.run_to_completion(Timestamp::ZERO, &mut host).unwrap();
+    assert_eq!(host.log.last().unwrap(), "0.000 s -: S -> T; exit S; enter T");
     assert!(!machine.activity_resumed(activation), "its state has been left");
 }
 

@@ -3,7 +3,7 @@
 use yase::{Activation, Host, Machine, Status, Timestamp};
 
 use crate::{check, compare};
-use yase_reference::world::World;
+use yase_reference::test_host::TestHost;
 use yase_reference::{chart, script};
 
 #[test]
@@ -159,14 +159,14 @@ fn r10_a_region_that_another_transition_has_left_does_not_fire() {
 fn r10_entering_stops_at_start_whose_way_out_is_the_next_micro_step_of_the_same_step() {
     let chart = chart("START\nP\n  START\n  A\nB\nc/START -> B\nB -> P : e\nP/START -> A\n");
     let mut machine = Machine::new(script::compile(&chart));
-    let mut world = World::new(&chart);
-    machine.start(Timestamp::ZERO, &mut world);
-    machine.run_to_completion(Timestamp::ZERO, &mut world).unwrap();
+    let mut host = TestHost::new(&chart);
+    machine.start(Timestamp::ZERO, &mut host);
+    machine.run_to_completion(Timestamp::ZERO, &mut host).unwrap();
     machine.dispatch_name("e");
-    let summary = machine.run_to_completion(Timestamp::ZERO, &mut world).unwrap();
+    let summary = machine.run_to_completion(Timestamp::ZERO, &mut host).unwrap();
     assert_eq!((summary.micro_steps, summary.transitions, summary.started), (2, 2, 0));
     compare(
-        &world.log[2..],
+        &host.log[2..],
         "0.000 s e: B -> P; exit B; enter P, P/START
          0.000 s -: P/START -> P/A; exit P/START; enter P/A",
     );
@@ -260,55 +260,55 @@ fn r13_after_terminate_nothing_fires_nor_terminate_where_another_has_left() {
 fn r13_at_root_end_a_chart_is_finished_and_idles_until_started_again() {
     let chart = chart("START\nA\nEND\nc/START -> A\nA -> c/END : e / raise(never)\n");
     let mut machine = Machine::new(script::compile(&chart));
-    let mut world = World::new(&chart);
+    let mut host = TestHost::new(&chart);
     assert_eq!((machine.status(), machine.needs_step(Timestamp::ZERO)), (Status::Idle, false));
     for _ in 0..2 {
-        machine.start(Timestamp::ZERO, &mut world);
+        machine.start(Timestamp::ZERO, &mut host);
         machine.dispatch_name("e");
         machine.dispatch_name("e");
-        machine.run_to_completion(Timestamp::ZERO, &mut world).unwrap();
+        machine.run_to_completion(Timestamp::ZERO, &mut host).unwrap();
         assert!(machine.is_finished());
         machine.dispatch_name("e");
         assert!(!machine.needs_step(Timestamp::from_millis(1)));
-        assert_eq!(machine.run_to_completion(Timestamp::ZERO, &mut world).unwrap().micro_steps, 0);
+        assert_eq!(machine.run_to_completion(Timestamp::ZERO, &mut host).unwrap().micro_steps, 0);
     }
     let once = "0.000 s start; enter c, START
                 0.000 s -: START -> A; exit START; enter A
                 0.000 s e: A -> END; exit A; do raise(never) (A -> END); enter END\n";
-    compare(&world.log, &once.repeat(2));
+    compare(&host.log, &once.repeat(2));
 }
 
 #[test]
 fn r13_stop_cancels_and_what_returns_later_is_not_for_the_next_run() {
     let chart = chart("START\nA | run\nB\nc/START -> A\nA -> B\n");
     let mut machine = Machine::new(script::compile(&chart));
-    let mut world = World { activities: World::new(&chart).activities, ..World::default() };
-    machine.start(Timestamp::ZERO, &mut world);
-    machine.run_to_completion(Timestamp::ZERO, &mut world).unwrap();
-    let first: Activation = world.jobs[0].activation;
-    machine.stop(&mut world);
+    let mut host = TestHost { activities: TestHost::new(&chart).activities, ..TestHost::default() };
+    machine.start(Timestamp::ZERO, &mut host);
+    machine.run_to_completion(Timestamp::ZERO, &mut host).unwrap();
+    let first: Activation = host.jobs[0].activation;
+    machine.stop(&mut host);
     assert_eq!(machine.status(), Status::Stopped);
     assert!(!machine.is_running(first.region));
-    machine.start(Timestamp::ZERO, &mut world);
-    machine.run_to_completion(Timestamp::ZERO, &mut world).unwrap();
+    machine.start(Timestamp::ZERO, &mut host);
+    machine.run_to_completion(Timestamp::ZERO, &mut host).unwrap();
     assert!(!machine.activity_returned(first, yase::Outcome::Done));
-    let second = world.jobs[1].activation;
+    let second = host.jobs[1].activation;
     assert!(machine.activity_returned(second, yase::Outcome::Done));
     assert!(!machine.activity_returned(second, yase::Outcome::Done));
-    machine.run_to_completion(Timestamp::ZERO, &mut world).unwrap();
+    machine.run_to_completion(Timestamp::ZERO, &mut host).unwrap();
     assert!(machine.is_active(chart::find(&chart, "B")));
-    world.cancel(first);
+    host.cancel(first);
 }
 
 #[test]
 fn r13_what_has_been_asked_to_return_is_not_asked_again() {
     let chart = chart("START\nA | run | for=50ms\nX\nc/START -> A\nA -> X {interrupts} : e\n");
     let mut machine = Machine::new(script::compile(&chart));
-    let mut world = World::new(&chart);
-    machine.start(Timestamp::ZERO, &mut world);
+    let mut host = TestHost::new(&chart);
+    machine.start(Timestamp::ZERO, &mut host);
     machine.dispatch_name("e");
-    machine.run_to_completion(Timestamp::ZERO, &mut world).unwrap();
-    machine.stop(&mut world);
-    machine.stop(&mut world);
-    assert_eq!(world.log.iter().filter(|line| line.contains("cancel A")).count(), 1, "{:?}", world.log);
+    machine.run_to_completion(Timestamp::ZERO, &mut host).unwrap();
+    machine.stop(&mut host);
+    machine.stop(&mut host);
+    assert_eq!(host.log.iter().filter(|line| line.contains("cancel A")).count(), 1, "{:?}", host.log);
 }

@@ -3,7 +3,7 @@
 use yase::{Machine, Semantics, Timestamp, TransitionToAncestor};
 
 use crate::{check, check_with, with};
-use yase_reference::{World, chart, script};
+use yase_reference::{TestHost, chart, script};
 
 #[test]
 fn r10_a_shallow_history_leads_to_the_child_which_begins_anew() {
@@ -204,13 +204,13 @@ fn r10_a_start_forgets_what_histories_remember() {
         "START\nA\nP\n  START\n  h h\n  B\n  C\nc/START -> P\nP/START -> B\nB -> C : k\nP -> A : e\nA -> h : f",
     );
     let mut machine = Machine::new(script::compile(&chart));
-    let mut world = World::new(&chart);
+    let mut host = TestHost::new(&chart);
     let mut leaf = |events: &[&str]| {
-        machine.start(Timestamp::ZERO, &mut world);
+        machine.start(Timestamp::ZERO, &mut host);
         for event in events {
             machine.dispatch_name(event);
         }
-        machine.run_to_completion(Timestamp::ZERO, &mut world).unwrap();
+        machine.run_to_completion(Timestamp::ZERO, &mut host).unwrap();
         machine.configuration().pop().map(|node| machine.chart().short_path(node)).unwrap()
     };
     assert_eq!(leaf(&["k", "e", "f"]), "P/C");

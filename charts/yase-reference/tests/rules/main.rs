@@ -56,7 +56,7 @@ fn compare(found: &[String], expected: &str) {
 
 /// The diagnostics that a chart gets, one a line.
 fn refusal(chart: &str) -> String {
-    match yase_reference::chart(chart).compile(&yase_reference::world::vocabulary()) {
+    match yase_reference::chart(chart).compile(&yase_reference::test_host::vocabulary()) {
         Ok(_) => "none".to_owned(),
         Err(found) => found.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"),
     }

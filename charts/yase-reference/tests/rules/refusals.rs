@@ -3,7 +3,7 @@
 use yase::{Machine, MachineErrorKind, Status, Timestamp};
 
 use crate::refusal;
-use yase_reference::{World, chart, script};
+use yase_reference::{TestHost, chart, script};
 
 const BOTH: &str = "
     START
@@ -106,14 +106,14 @@ fn r12_a_choice_without_an_else_is_warned_of_and_stops_with_its_name() {
 
     let chart = chart(text);
     let mut machine = Machine::new(script::compile(&chart));
-    let mut world = World::new(&chart);
-    machine.start(Timestamp::ZERO, &mut world);
-    machine.run_to_completion(Timestamp::ZERO, &mut world).unwrap();
-    let job = world.jobs.remove(0);
+    let mut host = TestHost::new(&chart);
+    machine.start(Timestamp::ZERO, &mut host);
+    machine.run_to_completion(Timestamp::ZERO, &mut host).unwrap();
+    let job = host.jobs.remove(0);
     machine.activity_returned(job.activation, yase::Outcome::Done);
     machine.dispatch_name("e");
     let before = machine.configuration();
-    let error = machine.run_to_completion(Timestamp::from_millis(9), &mut world).unwrap_err();
+    let error = machine.run_to_completion(Timestamp::from_millis(9), &mut host).unwrap_err();
     assert_eq!(error.kind(), MachineErrorKind::NoBranch);
     assert_eq!(error.node().map(|node| machine.chart().short_path(node)).as_deref(), Some("ch"));
     assert_eq!(error.to_string(), "no way out of CHOICE `ch` is open");
@@ -124,10 +124,10 @@ fn r12_a_choice_without_an_else_is_warned_of_and_stops_with_its_name() {
 fn r12_a_choice_that_fails_while_the_chart_starts_is_reported_by_the_first_step() {
     let chart = chart("START\nA\n! ch\nc/START -> ch\nch -> A : [A.n > 1]");
     let mut machine = Machine::new(script::compile_with(&chart, yase::Semantics::uml()));
-    let mut world = World::new(&chart);
-    machine.start(Timestamp::ZERO, &mut world);
+    let mut host = TestHost::new(&chart);
+    machine.start(Timestamp::ZERO, &mut host);
     assert!(machine.needs_step(Timestamp::ZERO));
-    let error = machine.run_to_completion(Timestamp::ZERO, &mut world).unwrap_err();
+    let error = machine.run_to_completion(Timestamp::ZERO, &mut host).unwrap_err();
     assert_eq!(error.kind(), MachineErrorKind::NoBranch);
     assert_eq!((machine.status(), machine.configuration().len()), (Status::Stopped, 0));
 }

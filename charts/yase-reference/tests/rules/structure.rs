@@ -4,7 +4,7 @@ use yase::statechart::{Node, NodeKind, Statechart, Transition};
 use yase::{Machine, NodeId, Timestamp};
 
 use crate::{check, refusal};
-use yase_reference::world::{World, vocabulary};
+use yase_reference::test_host::{TestHost, vocabulary};
 use yase_reference::{chart, script};
 
 const REGIONS: &str = "
@@ -27,8 +27,8 @@ const REGIONS: &str = "
 fn r01_a_configuration_is_closed_and_has_one_child_for_each_or_and_all_for_each_and() {
     let chart = chart(REGIONS);
     let mut machine = Machine::new(script::compile(&chart));
-    let mut world = World::new(&chart);
-    machine.start(Timestamp::ZERO, &mut world);
+    let mut host = TestHost::new(&chart);
+    machine.start(Timestamp::ZERO, &mut host);
     for _ in 0..3 {
         let configuration = machine.configuration();
         for &node in &configuration {
@@ -40,7 +40,7 @@ fn r01_a_configuration_is_closed_and_has_one_child_for_each_or_and_all_for_each_
                 _ => assert_eq!(active, 0),
             }
         }
-        machine.run_to_completion(Timestamp::ZERO, &mut world).unwrap();
+        machine.run_to_completion(Timestamp::ZERO, &mut host).unwrap();
     }
     let names: Vec<String> =
         machine.configuration().into_iter().map(|node| machine.chart().short_path(node)).collect();

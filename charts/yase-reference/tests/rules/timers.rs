@@ -250,21 +250,21 @@ fn r21_a_deferred_expiry_is_withdrawn_too() {
 fn r21_the_clock_never_runs_backwards() {
     use yase::{Machine, Timestamp};
 
-    use yase_reference::{World, chart, script};
+    use yase_reference::{TestHost, chart, script};
 
     let chart = chart("START\nS\nc/START -> S\nS -> S {internal} : e / StartTimeout(v, 10ms)\n");
     let mut machine = Machine::new(script::compile(&chart));
-    let mut world = World::new(&chart);
-    machine.start(Timestamp::from_millis(20), &mut world);
+    let mut host = TestHost::new(&chart);
+    machine.start(Timestamp::from_millis(20), &mut host);
     machine.dispatch_name("e");
-    machine.run_to_completion(Timestamp::from_millis(5), &mut world).unwrap();
+    machine.run_to_completion(Timestamp::from_millis(5), &mut host).unwrap();
     assert_eq!(machine.next_deadline(), Some(Timestamp::from_millis(30)));
 }
 
 #[test]
 fn r22_of_timers_that_expire_at_one_moment_the_chooser_says_which_is_first() {
     use yase::{Chooser, Machine};
-    use yase_reference::{World, script};
+    use yase_reference::{TestHost, script};
     let chart = yase_reference::chart(
         "
         START
@@ -276,9 +276,9 @@ fn r22_of_timers_that_expire_at_one_moment_the_chooser_says_which_is_first() {
     let order = |chooser| {
         let mut machine = Machine::new(script::compile(&chart));
         machine.set_chooser(chooser);
-        let mut world = World::new(&chart);
-        script::run(&mut machine, &script::Script::parse("9"), &mut world);
-        let events = world.log.iter().filter_map(|line| line.strip_prefix("0.005 s ")?.split(':').next());
+        let mut host = TestHost::new(&chart);
+        script::run(&mut machine, &script::Script::parse("9"), &mut host);
+        let events = host.log.iter().filter_map(|line| line.strip_prefix("0.005 s ")?.split(':').next());
         (events.collect::<String>(), machine.chooser().choices().to_vec())
     };
     assert_eq!(order(Chooser::declared()), ("uvw".into(), vec![]));

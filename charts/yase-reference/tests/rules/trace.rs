@@ -6,7 +6,7 @@ use yase::{
 };
 
 use crate::compare;
-use yase_reference::world::World;
+use yase_reference::test_host::TestHost;
 use yase_reference::{chart, script};
 
 const CHART: &str = "
@@ -97,10 +97,10 @@ fn r23_a_record_names_what_was_taken_left_done_and_entered() {
 fn r23_a_record_shows_the_guards_that_were_read() {
     let chart = chart(&CHART.replace("on the way", "through"));
     let mut machine = Machine::new(script::compile(&chart));
-    let mut world = World { reads: true, ..World::new(&chart) };
-    script::run(&mut machine, &script::Script::parse("1 A=0; 2 e; 2 A=3; 3 e; 4"), &mut world);
+    let mut host = TestHost { reads: true, ..TestHost::new(&chart) };
+    script::run(&mut machine, &script::Script::parse("1 A=0; 2 e; 2 A=3; 3 e; 4"), &mut host);
     compare(
-        &world.log[2..],
+        &host.log[2..],
         "0.002 s e: A -> c1 -> A; exit A; do raise(left) (exit A), raise(through) (A -> c1); enter A; read A -> c1 = true, c1 -> B = false
          0.002 s left: dropped
          0.002 s through: dropped

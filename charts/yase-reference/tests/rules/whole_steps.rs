@@ -7,15 +7,15 @@ use yase::{Machine, Timestamp};
 use crate::check;
 use yase_reference::chart;
 use yase_reference::script::{self, ByMicroSteps, Interpreter, Script};
-use yase_reference::world::World;
+use yase_reference::test_host::TestHost;
 
 /// Plays a script in whole steps and in micro-steps, and returns the log, guards included.
 fn with_reads(text: &str, script: &str) -> Vec<String> {
     let (chart, script) = (chart(text), Script::parse(script));
     let played = |machine: &mut dyn Play| {
-        let mut world = World { reads: true, ..World::new(&chart) };
-        machine.play(&script, &mut world);
-        world.log
+        let mut host = TestHost { reads: true, ..TestHost::new(&chart) };
+        machine.play(&script, &mut host);
+        host.log
     };
     let compiled = script::compile(&chart);
     let whole = played(&mut Machine::new(compiled.clone()));
@@ -24,12 +24,12 @@ fn with_reads(text: &str, script: &str) -> Vec<String> {
 }
 
 trait Play {
-    fn play(&mut self, script: &Script, world: &mut World);
+    fn play(&mut self, script: &Script, host: &mut TestHost);
 }
 
 impl<T: Interpreter> Play for T {
-    fn play(&mut self, script: &Script, world: &mut World) {
-        script::run(self, script, world);
+    fn play(&mut self, script: &Script, host: &mut TestHost) {
+        script::run(self, script, host);
     }
 }
 
@@ -99,16 +99,16 @@ fn r21_a_timer_that_was_over_long_ago_expires_in_the_next_step() {
         ",
     );
     for silent in [false, true] {
-        let mut world = World { silent, ..World::new(&chart) };
+        let mut host = TestHost { silent, ..TestHost::new(&chart) };
         let mut machine = Machine::new(script::compile(&chart));
-        machine.start(Timestamp::ZERO, &mut world);
-        machine.run_to_completion(Timestamp::ZERO, &mut world).unwrap();
+        machine.start(Timestamp::ZERO, &mut host);
+        machine.run_to_completion(Timestamp::ZERO, &mut host).unwrap();
         machine.dispatch_name("set");
-        machine.run_to_completion(Timestamp::ZERO, &mut world).unwrap();
+        machine.run_to_completion(Timestamp::ZERO, &mut host).unwrap();
         assert_eq!(machine.next_deadline(), Some(Timestamp::from_millis(10)));
         machine.dispatch_name("e");
         let late = Timestamp::ZERO + Duration::from_millis(25);
-        let summary = machine.run_to_completion(late, &mut world).unwrap();
+        let summary = machine.run_to_completion(late, &mut host).unwrap();
         assert_eq!((summary.transitions, machine.next_deadline()), (2, None), "B -> C at e, C -> A at v");
     }
 }
@@ -141,12 +141,12 @@ fn r13_beside_others_nothing_fires_after_the_end_of_the_chart() {
         ",
     );
     let played = [false, true].map(|silent| {
-        let mut world = World { silent, ..World::new(&chart) };
+        let mut host = TestHost { silent, ..TestHost::new(&chart) };
         let mut machine = Machine::new(script::compile(&chart));
-        machine.start(Timestamp::ZERO, &mut world);
-        machine.run_to_completion(Timestamp::ZERO, &mut world).unwrap();
+        machine.start(Timestamp::ZERO, &mut host);
+        machine.run_to_completion(Timestamp::ZERO, &mut host).unwrap();
         machine.dispatch_name("go");
-        let summary = machine.run_to_completion(Timestamp::from_millis(1), &mut world).unwrap();
+        let summary = machine.run_to_completion(Timestamp::from_millis(1), &mut host).unwrap();
         (summary.transitions, machine.status(), machine.configuration())
     });
     assert_eq!(played[0], played[1]);
@@ -216,21 +216,21 @@ fn r14_what_an_event_led_to_goes_on_without_an_event() {
     ";
     let chart = chart(text);
     for silent in [false, true] {
-        let mut world = World { silent, ..World::new(&chart) };
+        let mut host = TestHost { silent, ..TestHost::new(&chart) };
         let mut machine = Machine::new(script::compile(&chart));
-        machine.start(Timestamp::ZERO, &mut world);
-        machine.run_to_completion(Timestamp::ZERO, &mut world).unwrap();
+        machine.start(Timestamp::ZERO, &mut host);
+        machine.run_to_completion(Timestamp::ZERO, &mut host).unwrap();
         let counts = [1, 2].map(|millis| {
             machine.dispatch_name("e");
-            let summary = machine.run_to_completion(Timestamp::from_millis(millis), &mut world).unwrap();
+            let summary = machine.run_to_completion(Timestamp::from_millis(millis), &mut host).unwrap();
             (summary.micro_steps, summary.transitions)
         });
         assert_eq!(counts, [(3, 4), (2, 4)]);
-        machine.start(Timestamp::ZERO, &mut world);
-        machine.run_to_completion(Timestamp::ZERO, &mut world).unwrap();
+        machine.start(Timestamp::ZERO, &mut host);
+        machine.run_to_completion(Timestamp::ZERO, &mut host).unwrap();
         machine.dispatch_name("e");
         machine.dispatch_name("e");
-        let summary = machine.run_to_completion(Timestamp::from_millis(1), &mut world).unwrap();
+        let summary = machine.run_to_completion(Timestamp::from_millis(1), &mut host).unwrap();
         assert_eq!((summary.micro_steps, summary.transitions), (5, 8));
     }
 }
@@ -258,13 +258,13 @@ fn r10_what_one_state_does_at_an_event_says_nothing_of_others() {
     ";
     let chart = chart(text);
     for silent in [false, true] {
-        let mut world = World { silent, ..World::new(&chart) };
+        let mut host = TestHost { silent, ..TestHost::new(&chart) };
         let mut machine = Machine::new(script::compile(&chart));
-        machine.start(Timestamp::ZERO, &mut world);
-        machine.run_to_completion(Timestamp::ZERO, &mut world).unwrap();
+        machine.start(Timestamp::ZERO, &mut host);
+        machine.run_to_completion(Timestamp::ZERO, &mut host).unwrap();
         let transitions = [1, 2, 3].map(|millis| {
             machine.dispatch_name("e");
-            machine.run_to_completion(Timestamp::from_millis(millis), &mut world).unwrap().transitions
+            machine.run_to_completion(Timestamp::from_millis(millis), &mut host).unwrap().transitions
         });
         assert_eq!(transitions, [1, 3, 1]);
     }
@@ -314,12 +314,12 @@ fn handled(prepare: impl Fn(&mut Machine), at: u64) -> (u32, String) {
     ";
     let chart = chart(text);
     let mut machine = Machine::new(script::compile(&chart));
-    let mut world = World { silent: true, ..World::new(&chart) };
-    machine.start(Timestamp::ZERO, &mut world);
-    machine.run_to_completion(Timestamp::ZERO, &mut world).unwrap();
+    let mut host = TestHost { silent: true, ..TestHost::new(&chart) };
+    machine.start(Timestamp::ZERO, &mut host);
+    machine.run_to_completion(Timestamp::ZERO, &mut host).unwrap();
     prepare(&mut machine);
     machine.dispatch_name("e");
-    let summary = machine.run_to_completion(Timestamp::from_millis(at), &mut world).unwrap();
+    let summary = machine.run_to_completion(Timestamp::from_millis(at), &mut host).unwrap();
     let leaf = machine.configuration().pop().unwrap();
     (summary.micro_steps, machine.chart().short_path(leaf))
 }

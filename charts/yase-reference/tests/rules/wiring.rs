@@ -4,21 +4,21 @@ use yase::expression::EventId;
 use yase::{Host, Machine, Outcome, ScopeId, Timestamp, TopicId};
 
 use crate::check;
-use yase_reference::world::World;
+use yase_reference::test_host::TestHost;
 use yase_reference::{chart, script};
 
 const A: TopicId = TopicId(0);
 const B: TopicId = TopicId(1);
 const C: TopicId = TopicId(2);
 
-fn machine(text: &str) -> (Machine, World) {
+fn machine(text: &str) -> (Machine, TestHost) {
     let chart = chart(text);
     let mut machine = Machine::new(script::compile(&chart));
-    let mut world = World::new(&chart);
-    machine.start(Timestamp::ZERO, &mut world);
+    let mut host = TestHost::new(&chart);
+    machine.start(Timestamp::ZERO, &mut host);
     assert!(machine.needs_step(Timestamp::ZERO), "a start is a reason to step");
-    machine.run_to_completion(Timestamp::ZERO, &mut world).unwrap();
-    (machine, world)
+    machine.run_to_completion(Timestamp::ZERO, &mut host).unwrap();
+    (machine, host)
 }
 
 const WAITING: &str = "
@@ -34,24 +34,24 @@ const WAITING: &str = "
 
 #[test]
 fn r18_the_machine_sleeps_until_something_happens() {
-    let (mut machine, mut world) = machine(WAITING);
-    let activation = world.jobs[0].activation;
+    let (mut machine, mut host) = machine(WAITING);
+    let activation = host.jobs[0].activation;
     assert!(!machine.needs_step(Timestamp::from_millis(1)), "an activity runs");
 
     machine.activity_returned(activation, Outcome::Done);
     assert!(machine.needs_step(Timestamp::from_millis(1)), "an activity has returned");
-    machine.run_to_completion(Timestamp::from_millis(1), &mut world).unwrap();
+    machine.run_to_completion(Timestamp::from_millis(1), &mut host).unwrap();
     assert!(!machine.needs_step(Timestamp::from_millis(1)));
 
-    world.send(A, 1, [ScopeId::ROOT].into_iter());
+    host.send(A, 1, [ScopeId::ROOT].into_iter());
     machine.message_arrived(A, 1);
     assert!(machine.needs_step(Timestamp::from_millis(2)), "a guard reads it");
-    machine.run_to_completion(Timestamp::from_millis(2), &mut world).unwrap();
+    machine.run_to_completion(Timestamp::from_millis(2), &mut host).unwrap();
 
     assert!(!machine.needs_step(Timestamp::from_millis(51)));
     assert_eq!(machine.next_deadline(), Some(Timestamp::from_millis(52)));
     assert!(machine.needs_step(Timestamp::from_millis(52)), "a timer expires");
-    machine.run_to_completion(Timestamp::from_millis(52), &mut world).unwrap();
+    machine.run_to_completion(Timestamp::from_millis(52), &mut host).unwrap();
     assert_eq!((machine.needs_step(Timestamp::from_millis(60)), machine.next_deadline()), (false, None));
 
     assert!(machine.dispatch_name("e"));
@@ -92,30 +92,30 @@ fn r18_a_message_that_arrives_while_its_region_is_locked_is_not_lost() {
 
 #[test]
 fn r18_what_arrives_during_a_step_makes_another_one_due() {
-    let (mut machine, mut world) = machine(WAITING);
-    let activation = world.jobs[0].activation;
+    let (mut machine, mut host) = machine(WAITING);
+    let activation = host.jobs[0].activation;
     machine.activity_returned(activation, Outcome::Done);
-    machine.run_to_completion(Timestamp::ZERO, &mut world).unwrap();
+    machine.run_to_completion(Timestamp::ZERO, &mut host).unwrap();
     // nothing to do: but before the caller falls asleep the message comes
     machine.message_arrived(A, 1);
-    world.send(A, 1, [ScopeId::ROOT].into_iter());
+    host.send(A, 1, [ScopeId::ROOT].into_iter());
     assert!(machine.needs_step(Timestamp::ZERO));
-    machine.run_to_completion(Timestamp::ZERO, &mut world).unwrap();
-    assert!(world.log.last().unwrap().contains("S -> T"), "{:?}", world.log);
+    machine.run_to_completion(Timestamp::ZERO, &mut host).unwrap();
+    assert!(host.log.last().unwrap().contains("S -> T"), "{:?}", host.log);
 }
 
 #[test]
 fn r18_events_by_number_or_by_name_are_the_same() {
-    let (mut machine, mut world) =
+    let (mut machine, mut host) =
         machine("START\nS\nc/START -> S\nS -> S {internal} : e\nS -> S {internal} : not e\n");
     let event: EventId = machine.chart().events().find("e").unwrap();
     machine.dispatch(event);
     assert!(machine.dispatch_name("e"));
     assert!(!machine.dispatch_name("strange"), "no expression names it, but `not e` takes it");
-    machine.run_to_completion(Timestamp::ZERO, &mut world).unwrap();
-    let lines: Vec<&str> = world.log.iter().skip(2).map(String::as_str).collect();
+    machine.run_to_completion(Timestamp::ZERO, &mut host).unwrap();
+    let lines: Vec<&str> = host.log.iter().skip(2).map(String::as_str).collect();
     assert_eq!(lines, ["0.000 s e: S -> S", "0.000 s e: S -> S", "0.000 s ?: S -> S"]);
-    assert!(world.wants_trace());
+    assert!(host.wants_trace());
 }
 
 #[test]
@@ -130,21 +130,21 @@ fn r14_what_ran_before_a_start_is_forgotten() {
         S -> S {internal} : e / StartTimeout(v, 10ms)
         ",
     );
-    let mut world = World::new(&chart);
+    let mut host = TestHost::new(&chart);
     let mut machine = Machine::new(script::compile(&chart));
-    machine.start(Timestamp::ZERO, &mut world);
-    machine.run_to_completion(Timestamp::ZERO, &mut world).unwrap();
-    let first = world.jobs[0].activation;
+    machine.start(Timestamp::ZERO, &mut host);
+    machine.run_to_completion(Timestamp::ZERO, &mut host).unwrap();
+    let first = host.jobs[0].activation;
     machine.activity_returned(first, Outcome::Done);
     machine.dispatch_name("e");
-    machine.run_to_completion(Timestamp::ZERO, &mut world).unwrap();
+    machine.run_to_completion(Timestamp::ZERO, &mut host).unwrap();
     assert_eq!(machine.next_deadline(), Some(Timestamp::from_millis(10)));
 
-    machine.start(Timestamp::from_millis(1), &mut world);
-    machine.run_to_completion(Timestamp::from_millis(1), &mut world).unwrap();
+    machine.start(Timestamp::from_millis(1), &mut host);
+    machine.run_to_completion(Timestamp::from_millis(1), &mut host).unwrap();
     assert_eq!(machine.next_deadline(), None);
-    assert_eq!(world.jobs.len(), 2, "the activity is started again");
-    machine.start(Timestamp::from_millis(2), &mut world);
-    machine.run_to_completion(Timestamp::from_millis(2), &mut world).unwrap();
-    assert_eq!(world.jobs.len(), 3, "also if it has not returned");
+    assert_eq!(host.jobs.len(), 2, "the activity is started again");
+    machine.start(Timestamp::from_millis(2), &mut host);
+    machine.run_to_completion(Timestamp::from_millis(2), &mut host).unwrap();
+    assert_eq!(host.jobs.len(), 3, "also if it has not returned");
 }

@@ -165,8 +165,8 @@ fn another_state_is_made_active() {
 #[test]
 fn an_activity_is_given_up_and_queued_again() {
     let mut stage = Stage::new(LAMP, &["g"]);
-    assert_eq!(stage.world.jobs.len(), 1);
-    stage.world.jobs.clear();
+    assert_eq!(stage.host.jobs.len(), 1);
+    stage.host.jobs.clear();
     stage.edit(|snapshot| {
         let activity = &mut snapshot.activities[0];
         assert_eq!(activity.phase, ActivityPhase::Running);
@@ -175,7 +175,7 @@ fn an_activity_is_given_up_and_queued_again() {
     });
     assert!(stage.machine.needs_step(Timestamp::ZERO));
     stage.step(0);
-    let [job] = &stage.world.jobs[..] else { panic!("it was started once more") };
+    let [job] = &stage.host.jobs[..] else { panic!("it was started once more") };
     assert_eq!((job.name.as_str(), job.activation.number), ("fade", 1));
 }
 
@@ -195,11 +195,11 @@ fn siblings_of_one_name_are_distinguished() {
     for (transition, twin) in [1, 2].into_iter().zip(&twins) {
         chart.transition_mut(yase::TransitionId(transition)).target = *twin;
     }
-    let mut world = yase_reference::World::new(&chart);
+    let mut host = yase_reference::TestHost::new(&chart);
     let mut machine = yase::Machine::new(yase_reference::script::compile(&chart));
-    machine.start(Timestamp::ZERO, &mut world);
+    machine.start(Timestamp::ZERO, &mut host);
     machine.dispatch_name("f");
-    machine.run_to_completion(Timestamp::ZERO, &mut world).unwrap();
+    machine.run_to_completion(Timestamp::ZERO, &mut host).unwrap();
     let snapshot: Snapshot = machine.snapshot();
     assert_eq!(snapshot.configuration, ["c", "c/a#2"]);
     assert_eq!(snapshot.bound.recent, [["c/START -> c/b"], ["c/b -> c/a#2"]]);
@@ -233,7 +233,7 @@ fn a_chooser_goes_on_choosing_where_it_was() {
                     stage.machine = stage.restore(&serde_json::from_str(&text).unwrap()).unwrap();
                 }
             }
-            (stage.world.log, stage.machine.chooser().choices().to_vec())
+            (stage.host.log, stage.machine.chooser().choices().to_vec())
         };
         assert_eq!(play(true), play(false));
     }

@@ -9,7 +9,7 @@ use yase::{Activation, Chooser, CompiledChart, Machine, MicroStep, Outcome, Time
 use yase_reference::chance::Freedom;
 use yase_reference::random::Case;
 use yase_reference::script::{self, Interpreter};
-use yase_reference::world::{World, vocabulary};
+use yase_reference::test_host::{TestHost, vocabulary};
 
 const RUNS: u64 = 1000;
 
@@ -82,9 +82,9 @@ fn machine(chart: &Arc<CompiledChart>, case: &Case) -> Machine {
 }
 
 fn run(interpreter: &mut impl Interpreter, case: &Case) -> Vec<String> {
-    let mut world = World { verbose: true, reads: true, ..World::new(&case.chart) };
-    script::run(interpreter, &case.script, &mut world);
-    world.log
+    let mut host = TestHost { verbose: true, reads: true, ..TestHost::new(&case.chart) };
+    script::run(interpreter, &case.script, &mut host);
+    host.log
 }
 
 fn difference(expected: &[String], found: &[String]) -> String {
@@ -132,8 +132,8 @@ impl Cut {
 }
 
 impl Interpreter for Cut {
-    fn start(&mut self, now: Timestamp, world: &mut World) {
-        self.cut().start(now, world);
+    fn start(&mut self, now: Timestamp, host: &mut TestHost) {
+        self.cut().start(now, host);
     }
 
     fn event(&mut self, name: &str) {
@@ -152,9 +152,9 @@ impl Interpreter for Cut {
         self.cut().activity_resumed(activation)
     }
 
-    fn step(&mut self, now: Timestamp, world: &mut World) -> Result<(), String> {
+    fn step(&mut self, now: Timestamp, host: &mut TestHost) -> Result<(), String> {
         loop {
-            match self.cut().micro_step(now, world).map_err(|error| error.to_string())? {
+            match self.cut().micro_step(now, host).map_err(|error| error.to_string())? {
                 MicroStep::Progressed => {}
                 MicroStep::Stable(_) => return Ok(()),
             }

@@ -1,13 +1,13 @@
-//! A machine in the reference's world.
+//! A machine with the reference's host.
 
 use yase::snapshot::{RestoreError, Snapshot};
 use yase::{Machine, Outcome, Semantics, Timestamp};
 
-use yase_reference::world::World;
+use yase_reference::test_host::TestHost;
 
 pub(crate) struct Stage {
     pub(crate) machine: Machine,
-    pub(crate) world: World,
+    pub(crate) host: TestHost,
 }
 
 impl Stage {
@@ -18,10 +18,10 @@ impl Stage {
 
     pub(crate) fn with(semantics: Semantics, chart: &str, events: &[&str]) -> Stage {
         let chart = yase_reference::chart(chart);
-        let mut world = World::new(&chart);
+        let mut host = TestHost::new(&chart);
         let mut machine = Machine::new(yase_reference::script::compile_with(&chart, semantics));
-        machine.start(Timestamp::ZERO, &mut world);
-        let mut stage = Stage { machine, world };
+        machine.start(Timestamp::ZERO, &mut host);
+        let mut stage = Stage { machine, host };
         stage.step(0);
         for event in events {
             stage.event(event);
@@ -30,8 +30,8 @@ impl Stage {
     }
 
     pub(crate) fn step(&mut self, millis: u64) {
-        self.world.now = Timestamp::from_millis(millis);
-        self.machine.run_to_completion(self.world.now, &mut self.world).unwrap();
+        self.host.now = Timestamp::from_millis(millis);
+        self.machine.run_to_completion(self.host.now, &mut self.host).unwrap();
     }
 
     pub(crate) fn event(&mut self, name: &str) {
@@ -41,7 +41,7 @@ impl Stage {
 
     /// The only activity that runs returns.
     pub(crate) fn returns(&mut self) {
-        let job = self.world.jobs.remove(0);
+        let job = self.host.jobs.remove(0);
         assert!(self.machine.activity_returned(job.activation, Outcome::Done));
         self.step(0);
     }

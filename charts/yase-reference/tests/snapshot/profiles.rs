@@ -189,10 +189,10 @@ fn a_step_in_which_the_root_has_ended_goes_on_to_leave_everything() {
     let mut whole = Stage::with(Semantics::scxml(), chart, &["e"]);
     let mut stage = Stage::with(Semantics::scxml(), chart, &[]);
     stage.machine.dispatch_name("e");
-    while stage.machine.micro_step(Timestamp::ZERO, &mut stage.world) == Ok(MicroStep::Progressed) {
+    while stage.machine.micro_step(Timestamp::ZERO, &mut stage.host) == Ok(MicroStep::Progressed) {
         stage.edit(|_| {});
     }
-    assert_eq!(stage.world.log, whole.world.log);
+    assert_eq!(stage.host.log, whole.host.log);
     assert!(stage.machine.is_finished());
     whole.edit(|_| {});
     assert!(whole.machine.is_finished() && whole.active().is_empty());
@@ -208,12 +208,12 @@ fn a_machine_that_could_not_be_started_says_so_after_all() {
         c -> a : [false]
     ";
     let chart = yase_reference::chart(chart);
-    let mut world = yase_reference::World::new(&chart);
+    let mut host = yase_reference::TestHost::new(&chart);
     let mut machine = yase::Machine::new(yase_reference::script::compile_with(&chart, Semantics::uml()));
-    machine.start(Timestamp::ZERO, &mut world);
+    machine.start(Timestamp::ZERO, &mut host);
     let snapshot = machine.snapshot();
     assert_eq!(snapshot.no_branch.as_deref(), Some("c/c"));
     let mut restored = yase::Machine::restore(machine.chart().clone(), &snapshot).unwrap();
-    let expected = machine.run_to_completion(Timestamp::ZERO, &mut world).unwrap_err();
-    assert_eq!(restored.run_to_completion(Timestamp::ZERO, &mut world).unwrap_err(), expected);
+    let expected = machine.run_to_completion(Timestamp::ZERO, &mut host).unwrap_err();
+    assert_eq!(restored.run_to_completion(Timestamp::ZERO, &mut host).unwrap_err(), expected);
 }

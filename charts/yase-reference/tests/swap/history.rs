@@ -3,7 +3,7 @@
 
 use yase::{Semantics, TimerScope};
 
-use crate::world::{Stage, findings};
+use crate::stage::{Stage, findings};
 
 const PAST: &str = "
     START

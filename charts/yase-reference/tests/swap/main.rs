@@ -5,5 +5,5 @@
 mod history;
 mod refusals;
 mod same;
+mod stage;
 mod verdicts;
-mod world;

@@ -4,7 +4,7 @@ use std::num::NonZeroU32;
 
 use yase::{MicroStep, Semantics, TimerScope};
 
-use crate::world::Stage;
+use crate::stage::Stage;
 use yase_reference::script::compile_with;
 
 const TWO: &str = "
@@ -138,7 +138,7 @@ fn a_transition_that_waits_for_activities_and_is_no_more() {
 fn a_step_that_is_under_way() {
     let mut stage = Stage::new(TWO, &[]);
     stage.machine.dispatch_name("e");
-    let made = stage.machine.micro_step(stage.world.now, &mut stage.world);
+    let made = stage.machine.micro_step(stage.host.now, &mut stage.host);
     assert_eq!(made, Ok(MicroStep::Progressed));
     let plan = stage.plan(TWO);
     assert_eq!(stage.refusal(&plan), "a step is under way: a chart is swapped between steps");

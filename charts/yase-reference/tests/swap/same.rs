@@ -7,11 +7,11 @@ use yase::migrate::plan;
 use yase::statechart::{NodeId, Statechart, Transition};
 use yase::{Activation, Chooser, CompiledChart, Machine, Outcome, Semantics, Timestamp, TopicId};
 
-use crate::world::rekey;
+use crate::stage::rekey;
 use yase_reference::chance::Freedom;
 use yase_reference::random::Case;
 use yase_reference::script::{self, Interpreter};
-use yase_reference::world::World;
+use yase_reference::test_host::TestHost;
 
 const RUNS: u64 = 300;
 
@@ -66,9 +66,9 @@ fn machine(chart: Arc<CompiledChart>, case: &Case) -> Machine {
 }
 
 fn run(interpreter: &mut impl Interpreter, case: &Case) -> Vec<String> {
-    let mut world = World { verbose: true, ..World::new(&case.chart) };
-    script::run(interpreter, &case.script, &mut world);
-    world.log
+    let mut host = TestHost { verbose: true, ..TestHost::new(&case.chart) };
+    script::run(interpreter, &case.script, &mut host);
+    host.log
 }
 
 /// The same chart with its nodes added level by level.
@@ -99,20 +99,20 @@ struct Swapping {
 }
 
 impl Swapping {
-    fn swap(&mut self, world: &mut World) {
+    fn swap(&mut self, host: &mut TestHost) {
         let [one, other] = &self.charts;
         let plan = plan(one, other);
         assert!(plan.is_same());
         let report = self.machine.swap(&plan).unwrap_or_else(|refusal| panic!("{refusal}"));
-        rekey(world, other, &report);
+        rekey(host, other, &report);
         self.charts.reverse();
         self.swaps += 1;
     }
 }
 
 impl Interpreter for Swapping {
-    fn start(&mut self, now: Timestamp, world: &mut World) {
-        self.machine.start(now, world);
+    fn start(&mut self, now: Timestamp, host: &mut TestHost) {
+        self.machine.start(now, host);
     }
 
     fn event(&mut self, name: &str) {
@@ -131,10 +131,10 @@ impl Interpreter for Swapping {
         self.machine.activity_resumed(activation)
     }
 
-    fn step(&mut self, now: Timestamp, world: &mut World) -> Result<(), String> {
-        self.swap(world);
-        self.machine.run_to_completion(now, world).map_err(|error| error.to_string())?;
-        self.swap(world);
+    fn step(&mut self, now: Timestamp, host: &mut TestHost) -> Result<(), String> {
+        self.swap(host);
+        self.machine.run_to_completion(now, host).map_err(|error| error.to_string())?;
+        self.swap(host);
         Ok(())
     }
 

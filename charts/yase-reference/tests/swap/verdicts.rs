@@ -2,7 +2,7 @@
 
 use yase::migrate::{Disposition, MigratedItem};
 
-use crate::world::{Stage, findings};
+use crate::stage::{Stage, findings};
 
 const TWO: &str = "
     START
@@ -27,7 +27,7 @@ fn what_is_active_stays_active_without_entries_and_exits() {
     assert!(!plan.is_same());
     let report = stage.swap(&plan).unwrap();
     assert_eq!(findings(&report), "state `c`: kept\nstate `c/b`: kept");
-    assert!(stage.machine.needs_step(stage.world.now), "new guards may be open");
+    assert!(stage.machine.needs_step(stage.host.now), "new guards may be open");
     stage.step(0);
     assert_eq!((stage.lines().as_str(), stage.active().as_str()), ("", "b"));
     stage.event("f");
@@ -147,7 +147,7 @@ const THREE: &str = "
 #[test]
 fn a_new_region_of_an_active_and_is_entered_by_its_start_in_the_next_step() {
     let mut stage = Stage::new(BOTH, &[]);
-    stage.world.verbose = true;
+    stage.host.verbose = true;
     let plan = stage.plan(THREE);
     let report = stage.swap(&plan).unwrap();
     assert_eq!(report.to_enter, ["c/both/more"]);
@@ -199,7 +199,7 @@ fn there_and_back_again_is_as_before() {
 #[test]
 fn an_and_put_around_has_its_other_regions_entered_and_its_blackboards_filled() {
     let mut stage = Stage::new(TWO, &["e"]);
-    stage.world.verbose = true;
+    stage.host.verbose = true;
     let new = "
         START
         a

@@ -9,8 +9,6 @@ use yase::statechart::{Node, NodeId, NodeKind, Statechart, Transition};
 
 /// Maximum number of targets of a transition: each is compared with every other.
 const MAX_TARGETS: usize = 256;
-/// Maximum number of names among which the nearest is searched.
-const MAX_GUESSES: usize = 1000;
 
 impl DocumentReader<'_> {
     /// Resolves the targets of all transitions and adds the transitions to the chart.
@@ -36,8 +34,9 @@ impl DocumentReader<'_> {
                 None => {
                     let message = format!("there is no state `{}`", target.name);
                     let diagnostic = Diagnostic::error("E0606", target.span, message);
-                    let known = self.ids.keys().take(MAX_GUESSES).map(String::as_str);
-                    self.report(diagnostic.with_nearest(&target.name, known));
+                    let known = self.ids.keys().map(String::as_str);
+                    let found = diagnostic.with_suggestion(&self.suggestions, &target.name, known);
+                    self.report(found);
                 }
             }
         }

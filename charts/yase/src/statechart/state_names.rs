@@ -33,12 +33,13 @@ use super::{NodeId, Statechart};
 /// assert_eq!(names.short("player/active/decision~/decision/(SearchBall|takeAction)/SearchBall"), "decision/SearchBall");
 /// assert_eq!(names.iter().last(), Some("active/decision/1/START"));
 /// ```
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, PartialEq, Eq, Debug, Default)]
 pub struct StateNames {
     /// By the position of a node in the chart.
     names: Vec<String>,
-    paths: Vec<String>,
-    by_path: BTreeMap<String, usize>,
+    /// The positions, ordered by name.
+    by_name: Vec<usize>,
+    tree: PathTree,
 }
 
 /// A text that names no node, or several.
@@ -66,18 +67,21 @@ impl UnknownState {
 impl StateNames {
     /// The names of a chart's nodes.
     pub fn of(chart: &Statechart) -> StateNames {
-        StateNames::from_paths(chart.nodes().map(|(id, _)| chart.path(id)))
+        let parents = chart.nodes().map(|(_, node)| node.parent.map(|parent| parent.0 as usize)).collect();
+        StateNames::from_tree(PathTree::new(parents, chart.segments()))
     }
 
     /// The names for the [paths](Statechart::path) of all nodes of a chart, the root first.
     pub fn from_paths(paths: impl IntoIterator<Item = impl Into<String>>) -> StateNames {
         let paths: Vec<String> = paths.into_iter().map(Into::into).collect();
-        let mut by_path = BTreeMap::new();
-        for (index, path) in paths.iter().enumerate() {
-            by_path.entry(path.clone()).or_insert(index);
-        }
-        let tree = PathTree::new(&paths, &by_path);
-        StateNames { names: tree.names(), paths, by_path }
+        StateNames::from_tree(PathTree::from_paths(&paths))
+    }
+
+    fn from_tree(tree: PathTree) -> StateNames {
+        let names = tree.names();
+        let mut by_name: Vec<usize> = (0..names.len()).collect();
+        by_name.sort_by(|&one, &other| names[one].cmp(&names[other]));
+        StateNames { names, by_name, tree }
     }
 
     /// The names for some paths of a chart and the nodes around them: unique among these.
@@ -99,13 +103,18 @@ impl StateNames {
     }
 
     /// The names, in the order of the nodes.
-    pub fn iter(&self) -> impl ExactSizeIterator<Item = &str> {
+    pub fn iter(&self) -> impl ExactSizeIterator<Item = &str> + DoubleEndedIterator {
         self.names.iter().map(String::as_str)
     }
 
     /// The name of a node; empty for one that is not of this chart.
     pub fn name(&self, node: NodeId) -> &str {
         self.names.get(node.0 as usize).map_or("", String::as_str)
+    }
+
+    /// The [path](Statechart::path) of a node; empty for one that is not of this chart.
+    pub fn path(&self, node: NodeId) -> String {
+        self.tree.path(node.0 as usize)
     }
 
     /// The name of the node with a path, which may lack the root; an unknown path is returned.
@@ -115,13 +124,18 @@ impl StateNames {
 
     /// The same for both ends of a transition, `source -> target`, and for a sequence of these.
     pub fn short_transition(&self, name: &str) -> String {
-        const ARROW: &str = " -> ";
         name.split(ARROW).map(|end| self.short(end)).collect::<Vec<_>>().join(ARROW)
     }
 
     fn index(&self, path: &str) -> Option<usize> {
-        let below_root = || self.by_path.get(&format!("{}/{path}", self.paths.first()?));
-        self.by_path.get(path).or_else(below_root).copied()
+        let tree = &self.tree;
+        tree.below(&tree.roots, path).or_else(|| tree.below(tree.children.first()?, path))
+    }
+
+    /// The node of exactly this name.
+    pub fn named(&self, name: &str) -> Option<NodeId> {
+        let found = self.by_name.binary_search_by(|&index| self.names[index].as_str().cmp(name)).ok()?;
+        Some(NodeId(self.by_name[found] as u32))
     }
 
     /// The node that a text names: by its name, by its path, or by as much of the end of either as
@@ -130,12 +144,12 @@ impl StateNames {
     /// # Errors
     /// No node, or several, with their names.
     pub fn find(&self, text: &str) -> Result<NodeId, UnknownState> {
-        let exact = self.names.iter().position(|name| name == text).or_else(|| self.index(text));
-        if let Some(index) = exact {
-            return Ok(NodeId(index as u32));
+        let exact = || Some(NodeId(self.index(text)? as u32));
+        if let Some(node) = self.named(text).or_else(exact) {
+            return Ok(node);
         }
         let ends = |whole: &str| whole.strip_suffix(text).is_some_and(|before| before.ends_with('/'));
-        let fits = |index: &usize| ends(&self.names[*index]) || ends(&self.paths[*index]);
+        let fits = |index: &usize| ends(&self.names[*index]) || self.tree.ends_with(*index, text);
         let found: Vec<usize> = (0..self.names.len()).filter(fits).collect();
         match found[..] {
             [index] => Ok(NodeId(index as u32)),
@@ -147,15 +161,36 @@ impl StateNames {
     }
 }
 
+/// What stands between the ends of a transition.
+const ARROW: &str = " -> ";
+
 /// The nodes of a chart, known by their paths.
-struct PathTree<'a> {
+#[derive(Clone, PartialEq, Eq, Debug, Default)]
+struct PathTree {
     parents: Vec<Option<usize>>,
     /// The last segment of each path.
-    segments: Vec<&'a str>,
+    segments: Vec<String>,
+    /// The nodes without a parent, by segment.
+    roots: BTreeMap<String, usize>,
+    /// The nodes inside each node, by segment.
+    children: Vec<BTreeMap<String, usize>>,
 }
 
-impl<'a> PathTree<'a> {
-    fn new(paths: &'a [String], by_path: &BTreeMap<String, usize>) -> PathTree<'a> {
+impl PathTree {
+    fn new(parents: Vec<Option<usize>>, segments: Vec<String>) -> PathTree {
+        let (mut roots, mut children) = (BTreeMap::new(), vec![BTreeMap::new(); segments.len()]);
+        for (index, (parent, segment)) in parents.iter().zip(&segments).enumerate() {
+            let siblings = parent.map_or(&mut roots, |parent| &mut children[parent]);
+            siblings.entry(segment.clone()).or_insert(index);
+        }
+        PathTree { parents, segments, roots, children }
+    }
+
+    fn from_paths(paths: &[String]) -> PathTree {
+        let mut by_path = BTreeMap::new();
+        for (index, path) in paths.iter().enumerate() {
+            by_path.entry(path.as_str()).or_insert(index);
+        }
         let mut parents = Vec::with_capacity(paths.len());
         let mut segments = Vec::with_capacity(paths.len());
         for path in paths {
@@ -163,9 +198,44 @@ impl<'a> PathTree<'a> {
             let mut slashes = path.rmatch_indices('/').map(|(index, _)| index);
             let found = slashes.find_map(|slash| Some((*by_path.get(&path[..slash])?, &path[slash + 1..])));
             parents.push(found.map(|(parent, _)| parent));
-            segments.push(found.map_or(path.as_str(), |(_, segment)| segment));
+            segments.push(found.map_or(path.as_str(), |(_, segment)| segment).to_owned());
         }
-        PathTree { parents, segments }
+        PathTree::new(parents, segments)
+    }
+
+    fn path(&self, index: usize) -> String {
+        let around = |index: &usize| self.parents.get(*index).copied().flatten();
+        let way = std::iter::successors(Some(index), around);
+        let mut segments: Vec<&str> =
+            way.filter_map(|index| self.segments.get(index)).map(String::as_str).collect();
+        segments.reverse();
+        segments.join("/")
+    }
+
+    /// The node with a path that begins with one of some siblings.
+    fn below(&self, siblings: &BTreeMap<String, usize>, path: &str) -> Option<usize> {
+        let inside = |slash: usize| {
+            let node = *siblings.get(&path[..slash])?;
+            self.below(&self.children[node], &path[slash + 1..])
+        };
+        let alone = siblings.get(path).copied();
+        alone.or_else(|| path.match_indices('/').find_map(|(slash, _)| inside(slash)))
+    }
+
+    /// Whether a text is the end of a node's path, from some segment after the first.
+    fn ends_with(&self, index: usize, text: &str) -> bool {
+        let (mut at, mut rest) = (index, text);
+        loop {
+            let (segment, parent) = (&self.segments[at], self.parents[at]);
+            if rest == segment {
+                return parent.is_some();
+            }
+            let before = rest.strip_suffix(segment.as_str()).and_then(|before| before.strip_suffix('/'));
+            match (before, parent) {
+                (Some(before), Some(parent)) => (rest, at) = (before, parent),
+                _ => return false,
+            }
+        }
     }
 
     fn names(&self) -> Vec<String> {
@@ -173,6 +243,7 @@ impl<'a> PathTree<'a> {
         let labels = self.labels();
         let mut names: Vec<String> = Vec::with_capacity(self.segments.len());
         let mut taken = BTreeSet::new();
+        let mut numbers: BTreeMap<String, usize> = BTreeMap::new();
         for (index, label) in labels.iter().enumerate() {
             let around = self.parents[index].filter(|&parent| self.parents[parent].is_some());
             let name = match (&words[index], around) {
@@ -181,10 +252,10 @@ impl<'a> PathTree<'a> {
                 (None, None) => label.clone(),
             };
             let mut found = name.clone();
-            let mut number = 2;
             while !taken.insert(found.clone()) {
+                let number = numbers.entry(name.clone()).or_insert(1);
+                *number += 1;
                 found = format!("{name}#{number}");
-                number += 1;
             }
             names.push(found);
         }
@@ -223,17 +294,17 @@ impl<'a> PathTree<'a> {
 
     /// The word of a node, and those around it up to the root, innermost first; the root is named
     /// by itself.
-    fn chain(&self, index: usize) -> Option<Vec<&'a str>> {
-        let Some(parent) = self.parents[index] else { return Some(vec![self.segments[index]]) };
-        if !is_word(self.segments[index]) {
+    fn chain(&self, index: usize) -> Option<Vec<&str>> {
+        let Some(parent) = self.parents[index] else { return Some(vec![&self.segments[index]]) };
+        if !is_word(&self.segments[index]) {
             return None;
         }
-        let mut chain = vec![self.segments[index]];
+        let mut chain = vec![self.segments[index].as_str()];
         let mut next = Some(parent);
         while let Some(around) = next {
             next = self.parents[around];
-            if next.is_some() && is_word(self.segments[around]) {
-                chain.push(self.segments[around]);
+            if next.is_some() && is_word(&self.segments[around]) {
+                chain.push(&self.segments[around]);
             }
         }
         Some(chain)
@@ -242,7 +313,7 @@ impl<'a> PathTree<'a> {
     /// What each node adds to the name of the one around it.
     fn labels(&self) -> Vec<String> {
         let mut counts = vec![0; self.segments.len()];
-        let label = |(index, &segment): (usize, &&str)| {
+        let label = |(index, segment): (usize, &String)| {
             let number = self.parents[index].map(|parent| {
                 counts[parent] += usize::from(!is_connector(segment));
                 counts[parent]
@@ -250,7 +321,7 @@ impl<'a> PathTree<'a> {
             let is_brief = is_connector(segment) || is_word(stem(segment)) || segment.parse::<u32>().is_ok();
             match number.filter(|_| !is_brief) {
                 Some(number) => number.to_string(),
-                None => segment.to_owned(),
+                None => segment.clone(),
             }
         };
         self.segments.iter().enumerate().map(label).collect()
@@ -358,6 +429,25 @@ mod tests {
         assert_eq!(found("(Led~||active)/2/active/[walk]"), Ok("active/[walk]"));
         assert_eq!(found("Serch"), Err("there is no state `Serch`".to_owned()));
         assert_eq!(found("START"), Err("`START` is ambiguous: `1/1/Led~/START`, `active/START`".to_owned()));
+    }
+
+    /// Twins, and regions of one AND whose name contains all of them: each path would be as long as
+    /// the chart.
+    #[test]
+    fn the_names_of_a_large_chart_are_found_without_its_paths() {
+        use crate::statechart::{Node, NodeKind};
+
+        let mut chart = Statechart::new("r");
+        let and = chart.add(Statechart::ROOT, Node::new(NodeKind::And, "(A||A)".repeat(20_000)));
+        for _ in 0..20_000 {
+            let region = chart.add(and, Node::new(NodeKind::Or, ""));
+            chart.add(region, Node::new(NodeKind::Basic, "A"));
+        }
+        let names = StateNames::of(&chart);
+        assert_eq!(names.iter().next_back(), Some("A#20000"));
+        assert_eq!(names.iter().nth(4), Some("1/2"));
+        assert_eq!(names.iter().collect::<BTreeSet<_>>().len(), 40_002);
+        assert_eq!(names.path(NodeId(5)), chart.path(NodeId(5)));
     }
 
     #[test]

@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::time::Duration;
 
+use yase::diagnostic::Suggestions;
 use yase::expression::TextPosition;
 use yase::statechart::Constant;
 use yase::{Diagnostic, Span};
@@ -24,6 +25,7 @@ pub(crate) fn from_text(document: &ItemDocument) -> (Iac, Vec<Diagnostic>) {
         by_label: false,
         named_by_label: Vec::new(),
         labelled: BTreeSet::new(),
+        suggestions: Suggestions::default(),
         diagnostics: Vec::new(),
     };
     for (index, item) in document.items.iter().enumerate() {
@@ -66,6 +68,7 @@ struct Reader {
     named_by_label: Vec<usize>,
     /// Nodes with an explicit label.
     labelled: BTreeSet<usize>,
+    suggestions: Suggestions,
     diagnostics: Vec<Diagnostic>,
 }
 
@@ -284,7 +287,11 @@ impl Reader {
         if found.is_none() {
             let message = format!("there is no Variable `{}`", word.text);
             let names: Vec<&str> = self.variables.keys().map(|reference| reference.name.as_str()).collect();
-            let finding = Diagnostic::error("E0269", word.span, message).with_nearest(&word.text, names);
+            let finding = Diagnostic::error("E0269", word.span, message).with_suggestion(
+                &self.suggestions,
+                &word.text,
+                names,
+            );
             self.report(finding);
         }
         found
@@ -347,8 +354,11 @@ impl Reader {
             [one] => return Some(*one),
             [] => {
                 let message = format!("`{}` is no state", path.text);
-                let finding =
-                    Diagnostic::error("E0271", path.span, message).with_nearest(&path.text, paths.names());
+                let finding = Diagnostic::error("E0271", path.span, message).with_suggestion(
+                    &self.suggestions,
+                    &path.text,
+                    paths.names(),
+                );
                 self.report(finding);
             }
             several => {

@@ -37,14 +37,34 @@ fn roots(chart: &Iac, file: Span) -> Vec<Diagnostic> {
     found
 }
 
+/// Checks the labels. A label that continues those before it, or that of its parent, is not
+/// reported if these are wrong: they are.
 fn labels(chart: &Iac) -> Vec<Diagnostic> {
     let usual = chart.labels();
-    let wrong = chart.nodes.iter().zip(&usual).filter(|(node, usual)| node.label != **usual);
+    // By node: the number of the child that comes next.
+    let mut next = vec![1_usize; chart.nodes.len()];
+    let mut wrong = Vec::new();
+    for (node, usual) in chart.nodes.iter().zip(&usual) {
+        let written = node.label.rsplit_once('.').and_then(|(_, number)| number.parse::<usize>().ok());
+        let follows = match node.parent.and_then(|parent| Some((chart.nodes.get(parent)?, &mut next[parent])))
+        {
+            Some((parent, next)) => {
+                let follows = node.label == format!("{}.{next}", parent.label);
+                *next = written.unwrap_or(*next).saturating_add(1);
+                follows
+            }
+            None => false,
+        };
+        if node.label != *usual && !follows {
+            wrong.push((node, usual));
+        }
+    }
     let message = |label: &str, usual: &str| match label {
         "" => format!("a node has no label, which would be `{usual}`"),
         label => format!("the label is `{label}` instead of `{usual}`"),
     };
     wrong
+        .into_iter()
         .map(|(node, usual)| Diagnostic::warning("E0813", node.place.0, message(&node.label, usual)))
         .collect()
 }
@@ -108,4 +128,30 @@ fn ends(chart: &Iac) -> Vec<Diagnostic> {
         }
     }
     found
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn a_skipped_label_is_reported_once() {
+        let child = |label: &str, inner: &str| {
+            format!("<Children name=\"a\" label=\"{label}\" type=\"OR\">{inner}</Children>")
+        };
+        let report = |children: &str| -> Vec<String> {
+            let text = format!(
+                "<statechart:Model xmi:version=\"2.0\" xmlns:xmi=\"http://www.omg.org/XMI\" \
+                 xmlns:statechart=\"http://statechart/1.0\" name=\"r\"><nodes name=\"r\" label=\"0\" \
+                 type=\"OR\">{children}</nodes></statechart:Model>"
+            );
+            let (_, found) = crate::convert::read(&yase::Source::new("r.stct", text));
+            found.into_iter().filter(|it| it.code == "E0813").map(|it| it.message).collect()
+        };
+        let skipped = [child("0.1", ""), child("0.3", &child("0.3.1", "")), child("0.4", "")].concat();
+        assert_eq!(report(&skipped), ["the label is `0.3` instead of `0.2`"]);
+        let repeated = [child("0.1", ""), child("0.1", ""), child("0.2", ""), child("", "")].concat();
+        assert_eq!(
+            report(&repeated),
+            ["the label is `0.1` instead of `0.2`", "a node has no label, which would be `0.4`"]
+        );
+    }
 }

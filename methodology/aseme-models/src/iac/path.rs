@@ -13,6 +13,8 @@ pub(crate) struct NodePaths {
     parents: Vec<Option<usize>>,
     /// The nodes by the last segment of their path.
     by_last: BTreeMap<String, Vec<usize>>,
+    /// The nodes by the last two segments of their path: many composites have a START.
+    by_last_two: BTreeMap<(String, String), Vec<usize>>,
 }
 
 impl NodePaths {
@@ -29,7 +31,14 @@ impl NodePaths {
         for (index, segment) in segments.iter().enumerate() {
             by_last.entry(segment.clone()).or_default().push(index);
         }
-        NodePaths { segments, parents: chart.nodes.iter().map(|node| node.parent).collect(), by_last }
+        let mut by_last_two: BTreeMap<(String, String), Vec<usize>> = BTreeMap::new();
+        for (index, node) in chart.nodes.iter().enumerate() {
+            if let Some(around) = node.parent.and_then(|parent| segments.get(parent)) {
+                by_last_two.entry((around.clone(), segments[index].clone())).or_default().push(index);
+            }
+        }
+        let parents = chart.nodes.iter().map(|node| node.parent).collect();
+        NodePaths { segments, parents, by_last, by_last_two }
     }
 
     /// The shortest unique end of a node's path.
@@ -55,8 +64,12 @@ impl NodePaths {
     pub(crate) fn find(&self, path: &str) -> Vec<usize> {
         let (from_root, path) = path.strip_prefix('/').map_or((false, path), |path| (true, path));
         let steps = steps(path);
-        let Some(last) = steps.last() else { return Vec::new() };
-        let candidates = self.by_last.get(last).map(Vec::as_slice).unwrap_or_default();
+        let candidates = match steps.as_slice() {
+            [] => return Vec::new(),
+            [last] => self.by_last.get(last),
+            [.., around, last] => self.by_last_two.get(&(around.clone(), last.clone())),
+        };
+        let candidates = candidates.map(Vec::as_slice).unwrap_or_default();
         candidates.iter().copied().filter(|&node| self.fits(node, &steps, from_root)).collect()
     }
 

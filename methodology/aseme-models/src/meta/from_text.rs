@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use yase::Diagnostic;
+use yase::diagnostic::Suggestions;
 use yase::expression::TextPosition;
 
 use super::{Class, Feature, FeatureKind, FeatureValue, MANY, Metamodel, ModelInstance, Object};
@@ -10,7 +11,12 @@ use crate::document::{Item, ItemDocument, KeyValue, Line, Reference, SpannedText
 
 /// Parses a model from text; the findings are E0261 to E0269.
 pub(crate) fn from_text(metamodel: &Metamodel, document: &ItemDocument) -> (ModelInstance, Vec<Diagnostic>) {
-    let mut reader = Reader { metamodel, titles: Vec::new(), diagnostics: Vec::new() };
+    let mut reader = Reader {
+        metamodel,
+        titles: Vec::new(),
+        suggestions: Suggestions::default(),
+        diagnostics: Vec::new(),
+    };
     let items = reader.sorted(document);
     reader.titles =
         metamodel.classes.iter().zip(&items).map(|(class, items)| reader.titles(class, items)).collect();
@@ -26,6 +32,7 @@ struct Reader<'a> {
     metamodel: &'a Metamodel,
     /// For each class, the index of the k-th object of a name.
     titles: Vec<BTreeMap<Reference, usize>>,
+    suggestions: Suggestions,
     diagnostics: Vec<Diagnostic>,
 }
 
@@ -176,7 +183,11 @@ impl Reader<'_> {
         if found.is_none() {
             let message = format!("there is no {} `{}`", self.metamodel.classes[class].word, word.text);
             let names = titles.keys().map(|reference| reference.name.as_str());
-            let found = Diagnostic::error("E0269", word.span, message).with_nearest(&word.text, names);
+            let found = Diagnostic::error("E0269", word.span, message).with_suggestion(
+                &self.suggestions,
+                &word.text,
+                names,
+            );
             self.report(found);
         }
         found

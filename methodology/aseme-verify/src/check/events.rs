@@ -6,7 +6,7 @@
 
 use std::collections::BTreeMap;
 
-use yase::diagnostic::nearest;
+use yase::diagnostic::Suggestions;
 use yase::expression::{Action, ActionKind, Path, Trigger};
 use yase::{Diagnostic, Span};
 
@@ -19,6 +19,7 @@ pub(crate) fn check(subject: &CheckedModel, settings: &CheckSettings) -> Vec<Dia
         return Vec::new();
     }
     let (waited, raised, timers) = (waited(subject), raised(subject), started(subject));
+    let suggestions = Suggestions::default();
     let comes = |name: &str| {
         raised.contains_key(name)
             || timers.contains_key(name)
@@ -29,7 +30,7 @@ pub(crate) fn check(subject: &CheckedModel, settings: &CheckSettings) -> Vec<Dia
         let found =
             Diagnostic::warning("M16", span, format!("no action of the chart raises the event `{name}`"));
         let candidates = raised.keys().chain(timers.keys()).map(String::as_str);
-        match nearest(name, candidates) {
+        match suggestions.nearest(name, candidates) {
             Some(near) => found.with_hint(format!("did you mean `{near}`?")),
             None => found.with_hint("declare it as external if an activity or another agent raises it"),
         }
@@ -42,7 +43,7 @@ pub(crate) fn check(subject: &CheckedModel, settings: &CheckSettings) -> Vec<Dia
     let never_taken = raised.iter().filter(|(name, _)| !is_waited_for(name)).map(|(name, &span)| {
         let found = Diagnostic::warning("M16", span, format!("no transition waits for the event `{name}`"));
         let found = found.with_hint("let a transition wait for it, or do not raise it");
-        found.with_nearest(name, waited.keys().map(String::as_str))
+        found.with_suggestion(&suggestions, name, waited.keys().map(String::as_str))
     });
     never_raised.chain(never_taken).collect()
 }

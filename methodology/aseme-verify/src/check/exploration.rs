@@ -99,7 +99,7 @@ impl ExplorationCheck<'_> {
             findings.extend(self.dead_ends(&stuck));
         }
         if let Some(world) = settings.world.as_ref().filter(|_| self.found.is_finished()) {
-            findings.extend(messages::undelivered(self.subject, world, self.found));
+            findings.extend(messages::undelivered(self.subject, world, settings, self.found));
         }
         if let Some(world) = &settings.world {
             findings.extend(messages::concurrent_publishers(self.subject, world, self.found));

@@ -170,7 +170,7 @@ impl<'a> MomentSearch<'a> {
         let chart = &self.subject.chart;
         match chart.node(node).kind {
             NodeKind::Or | NodeKind::And => {
-                let inside = chart.nodes().filter(|(_, it)| it.parent == Some(node));
+                let inside = chart.children(node).iter().map(|&id| (id, chart.node(id)));
                 let begins = inside.filter(|(_, it)| matches!(it.kind, NodeKind::Start | NodeKind::Or));
                 begins
                     .flat_map(|(id, it)| match (it.kind, chart.node(node).kind) {

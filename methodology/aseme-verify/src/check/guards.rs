@@ -6,21 +6,28 @@ mod connectors;
 use yase::expression::Expression;
 use yase::{Diagnostic, TransitionId};
 
+use crate::check_settings::CheckedParts;
 use crate::checked_model::CheckedModel;
 use crate::logic::GuardSolver;
 
-pub(crate) fn check(subject: &CheckedModel) -> Vec<Diagnostic> {
+pub(crate) fn check(subject: &CheckedModel, parts: &CheckedParts<'_>) -> Vec<Diagnostic> {
     let guards = GuardCheck { subject, logic: GuardSolver::new(&subject.chart.constants) };
     let mut found = Vec::new();
     for (id, _) in subject.chart.transitions() {
+        if !parts.go_on_after(1) {
+            return found;
+        }
         found.extend(guards.never_or_always(id));
     }
     for (id, _) in subject.chart.nodes() {
+        if !parts.go_on_after(1) {
+            return found;
+        }
         found.extend(guards.cases_left_open(id));
         found.extend(guards.dead_ways(id));
         found.extend(guards.alternatives(id));
     }
-    found.extend(guards.conflicting_regions());
+    found.extend(guards.conflicting_regions(parts));
     found
 }
 

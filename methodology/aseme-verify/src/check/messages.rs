@@ -7,11 +7,12 @@
 use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 
-use yase::diagnostic::nearest;
+use yase::diagnostic::Suggestions;
 use yase::expression::{ActionKind, Path};
-use yase::{Diagnostic, NodeId, NodeKind, TransitionId};
-use yase_explore::Exploration;
+use yase::{Diagnostic, NodeId, NodeKind, Span, TransitionId};
+use yase_explore::{Exploration, ExplorationProgress};
 
+use crate::check_settings::CheckSettings;
 use crate::checked_model::CheckedModel;
 use crate::checked_model::timers;
 use crate::finding::Finding;
@@ -24,20 +25,16 @@ pub(crate) fn names(subject: &CheckedModel, world: &ProgramSymbols) -> Vec<Diagn
     if let Err(wrong) = subject.chart.compile_with(&world.vocabulary, subject.semantics) {
         // Structural faults do not depend on the program: other checks report them.
         let is_about_names = |it: &Diagnostic| it.is_error() && it.code.starts_with("E01");
-        found.extend(wrong.into_iter().filter(is_about_names).map(|diagnostic| unknown(subject, diagnostic)));
+        let places = PlacedTransitions::new(subject);
+        found.extend(wrong.into_iter().filter(is_about_names).map(|diagnostic| unknown(&places, diagnostic)));
     }
     found
 }
 
 /// An invalid expression as a finding, positioned in the file only where the file contains it
 /// verbatim.
-fn unknown(subject: &CheckedModel, diagnostic: Diagnostic) -> Diagnostic {
-    let inside = |id: TransitionId| {
-        let whole = subject.places.transition(id);
-        whole.start <= diagnostic.span.start && diagnostic.span.end <= whole.end && whole.end > whole.start
-    };
-    let is_placed = subject.chart.transitions().any(|(id, _)| inside(id));
-    let span = if is_placed { diagnostic.span } else { yase::Span::default() };
+fn unknown(places: &PlacedTransitions, diagnostic: Diagnostic) -> Diagnostic {
+    let span = if places.contain(diagnostic.span) { diagnostic.span } else { Span::default() };
     let hint = diagnostic
         .hint
         .clone()
@@ -45,14 +42,42 @@ fn unknown(subject: &CheckedModel, diagnostic: Diagnostic) -> Diagnostic {
     Diagnostic { code: "M17", span, hint, ..diagnostic }
 }
 
+/// The spans of the transitions of a chart, by their first byte.
+struct PlacedTransitions {
+    /// The first byte of each span, and the last end of the spans up to it.
+    ends: Vec<(usize, usize)>,
+}
+
+impl PlacedTransitions {
+    fn new(subject: &CheckedModel) -> PlacedTransitions {
+        let spans = subject.chart.transitions().map(|(id, _)| subject.places.transition(id));
+        let mut ends: Vec<(usize, usize)> =
+            spans.filter(|span| span.end > span.start).map(|span| (span.start, span.end)).collect();
+        ends.sort_unstable();
+        let mut last = 0;
+        for (_, end) in &mut ends {
+            last = last.max(*end);
+            *end = last;
+        }
+        PlacedTransitions { ends }
+    }
+
+    /// Whether a span lies inside that of a transition.
+    fn contain(&self, span: Span) -> bool {
+        let before = self.ends.partition_point(|&(start, _)| start <= span.start);
+        before.checked_sub(1).is_some_and(|index| self.ends[index].1 >= span.end)
+    }
+}
+
 fn activities(subject: &CheckedModel, world: &ProgramSymbols) -> Vec<Diagnostic> {
     let mut found = Vec::new();
+    let suggestions = Suggestions::default();
     for (id, node) in subject.chart.nodes() {
         let Some(name) = node.activity.as_ref().filter(|name| !world.activities.contains_key(*name)) else {
             continue;
         };
         let message = format!("there is no activity `{name}`");
-        let hint = match nearest(name, world.activities.keys().map(String::as_str)) {
+        let hint = match suggestions.nearest(name, world.activities.keys().map(String::as_str)) {
             Some(near) => format!("did you mean `{near}`?"),
             None => {
                 "write it, or link the crate that has it; `--unlinked` is for models of other programs".into()
@@ -86,14 +111,30 @@ pub(crate) fn names_like_formulas(subject: &CheckedModel) -> Vec<Diagnostic> {
         .collect()
 }
 
+/// So many transitions that read a message on one blackboard are compared with each that writes it.
+const READERS: usize = 16;
+
+/// So many blackboards are compared with that of each transition that writes a message. Those of
+/// regions that are not apart from it are the ones around it and inside it.
+const BOARDS: usize = 1_000;
+
 /// M11: a transition of one region writes what one of another region may read in the same step, and
 /// does not see yet.
 pub(crate) fn same_step(subject: &CheckedModel) -> Vec<Diagnostic> {
     let mut found = Vec::new();
-    let mut readers: BTreeMap<String, Vec<TransitionId>> = BTreeMap::new();
+    if !subject.chart.nodes().any(|(_, node)| node.kind == NodeKind::And) {
+        return found;
+    }
+    // By message, trigger and blackboard: with one transition of another region all are apart.
+    let mut readers: BTreeMap<(String, String), BTreeMap<NodeId, Vec<TransitionId>>> = BTreeMap::new();
+    let trigger = |id| subject.trigger(id).map_or_else(String::new, ToString::to_string);
     for (id, transition) in subject.chart.transitions() {
         for message in transition.expression.guard.iter().flat_map(logic::messages) {
-            readers.entry(message).or_default().push(id);
+            let boards = readers.entry((message, trigger(id))).or_default();
+            let of_board = boards.entry(timers::blackboard(subject, id)).or_default();
+            if of_board.len() < READERS {
+                of_board.push(id);
+            }
         }
     }
     for (writing, transition) in subject.chart.transitions() {
@@ -102,24 +143,18 @@ pub(crate) fn same_step(subject: &CheckedModel) -> Vec<Diagnostic> {
             _ => None,
         });
         for message in written.collect::<BTreeSet<String>>() {
-            let mut of_message = readers.get(&message).into_iter().flatten().copied();
-            let reader = of_message.find(|&id| may_fire_together(subject, writing, id));
+            let key = (message, trigger(writing));
+            let board = timers::blackboard(subject, writing);
+            let boards = readers.get(&key).into_iter().flatten().filter(|(other, _)| **other != board);
+            let mut ids = boards.take(BOARDS).flat_map(|(_, ids)| ids).copied();
+            let apart = |&id: &TransitionId| {
+                subject.apart(transition.source, subject.transition(id).source).is_some()
+            };
+            let (reader, message) = (ids.find(apart), key.0);
             found.extend(reader.map(|reading| written_in_same_step(subject, writing, reading, &message)));
         }
     }
     found
-}
-
-/// Whether two transitions belong to different regions of one AND and may be taken in one step.
-fn may_fire_together(subject: &CheckedModel, one: TransitionId, other: TransitionId) -> bool {
-    let (first, second) = (subject.transition(one), subject.transition(other));
-    let apart = subject.apart(first.source, second.source).is_some();
-    let on_one_occasion = match (&first.expression.trigger, &second.expression.trigger) {
-        (None, None) => true,
-        (Some(one), Some(other)) => one == other,
-        _ => false,
-    };
-    apart && on_one_occasion && timers::blackboard(subject, one) != timers::blackboard(subject, other)
 }
 
 fn message_of(field: &Path) -> Option<String> {
@@ -145,6 +180,7 @@ fn written_in_same_step(
 pub(crate) fn undelivered(
     subject: &CheckedModel,
     world: &ProgramSymbols,
+    settings: &CheckSettings,
     found: &Exploration,
 ) -> Vec<Finding> {
     let guarded = subject
@@ -152,42 +188,53 @@ pub(crate) fn undelivered(
         .transitions()
         .map(|(id, _)| id)
         .filter(|&id| subject.transition(id).expression.guard.is_some());
-    guarded.filter_map(|id| undelivered_at(subject, world, found, id)).collect()
+    let outgoing = outgoing(found);
+    let mut published: BTreeMap<String, Option<BTreeSet<NodeId>>> = BTreeMap::new();
+    let mut findings = Vec::new();
+    for id in guarded {
+        let states = found.states().len();
+        if settings.observer.stops(ExplorationProgress { states, ..ExplorationProgress::default() }) {
+            break;
+        }
+        for message in subject.transition(id).expression.guard.iter().flat_map(logic::messages) {
+            let publishers =
+                published.entry(message.clone()).or_insert_with(|| publishers(subject, world, &message));
+            let Some(publishers) = publishers else { continue };
+            if let Some(finding) = undelivered_at(subject, found, &outgoing, (id, &message), publishers) {
+                findings.push(finding);
+                break;
+            }
+        }
+    }
+    findings
 }
 
 fn undelivered_at(
     subject: &CheckedModel,
-    world: &ProgramSymbols,
     found: &Exploration,
-    id: TransitionId,
+    outgoing: &BTreeMap<usize, Vec<usize>>,
+    (id, message): (TransitionId, &str),
+    publishers: &BTreeSet<NodeId>,
 ) -> Option<Finding> {
-    let transition = subject.transition(id);
-    let guard = transition.expression.guard.as_ref()?;
-    for message in logic::messages(guard) {
-        let Some(publishers) = publishers(subject, world, &message) else { continue };
-        let outgoing = outgoing(found);
-        let is_in_vain = |number: usize| {
-            let (source, state) = (transition.source, &found.states()[number]);
-            let is_ready = matches!(subject.kind(source), NodeKind::Basic | NodeKind::Start);
-            let is_read = is_ready && state.is_active(source) && !state.running.contains(&source);
-            is_read
-                && !publishers.contains(&source)
-                && !may_return_while(found, &outgoing, number, source, &publishers)
-        };
-        if let Some(way) = path_without(found, &outgoing, &publishers, is_in_vain) {
-            let names: Vec<String> =
-                publishers.iter().map(|&node| format!("`{}`", subject.path(node))).collect();
-            let says = format!(
-                "the guard of `{}` waits for a `{message}` that may not have arrived and cannot arrive while it waits: it is published by {}",
-                subject.arrow(id),
-                names.join(", ")
-            );
-            let diagnostic = Diagnostic::warning("M18", subject.places.guard(id), says);
-            let hint = format!("run its publisher before, or add a transition for `{message} == NULL`");
-            return Some(Finding { diagnostic: diagnostic.with_hint(hint), trace: Some(way) });
-        }
+    let source = subject.transition(id).source;
+    if publishers.contains(&source) || !matches!(subject.kind(source), NodeKind::Basic | NodeKind::Start) {
+        return None;
     }
-    None
+    let is_in_vain = |number: usize| {
+        let state = &found.states()[number];
+        let is_read = state.is_active(source) && !state.running.contains(&source);
+        is_read && !may_return_while(found, outgoing, number, source, publishers)
+    };
+    let way = path_without(found, outgoing, publishers, is_in_vain)?;
+    let names: Vec<String> = publishers.iter().map(|&node| format!("`{}`", subject.path(node))).collect();
+    let says = format!(
+        "the guard of `{}` waits for a `{message}` that may not have arrived and cannot arrive while it waits: it is published by {}",
+        subject.arrow(id),
+        names.join(", ")
+    );
+    let diagnostic = Diagnostic::warning("M18", subject.places.guard(id), says);
+    let hint = format!("run its publisher before, or add a transition for `{message} == NULL`");
+    Some(Finding { diagnostic: diagnostic.with_hint(hint), trace: Some(way) })
 }
 
 /// M21: two states run the same activity at once, and both publish: each overwrites the other's

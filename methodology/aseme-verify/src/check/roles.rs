@@ -3,6 +3,7 @@
 
 use std::collections::BTreeSet;
 
+use yase::diagnostic::Suggestions;
 use yase::expression::{EventInterner, NameScope, ScriptInterner, TransitionExpression};
 use yase::{Diagnostic, Span};
 
@@ -61,8 +62,12 @@ fn unknown_fields(participant: &Participant, world: &ProgramSymbols) -> Vec<Diag
 fn system_roles(system: &SystemRoles) -> Vec<Diagnostic> {
     let mut found = without_functionality(system);
     found.extend(unused_functionalities(system));
-    found.extend(in_no_formula(system));
-    found.extend(system.roles.iter().flat_map(|role| unknown_names(system, role)));
+    let suggestions = Suggestions::default();
+    found.extend(in_no_formula(system, &suggestions));
+    let activities: BTreeSet<&str> =
+        system.activities.iter().map(|activity| activity.name.as_str()).collect();
+    let unknown = system.roles.iter().flat_map(|role| unknown_names(system, &activities, role, &suggestions));
+    found.extend(unknown);
     found
 }
 
@@ -105,7 +110,7 @@ fn names(role: &Role) -> BTreeSet<String> {
     names.filter(|name| !formulas.contains(name)).map(String::from).collect()
 }
 
-fn in_no_formula(system: &SystemRoles) -> Vec<Diagnostic> {
+fn in_no_formula(system: &SystemRoles, suggestions: &Suggestions) -> Vec<Diagnostic> {
     let named: BTreeSet<String> = system.roles.iter().flat_map(names).collect();
     let unnamed = system.activities.iter().filter(|activity| !named.contains(&activity.name));
     unnamed
@@ -117,19 +122,24 @@ fn in_no_formula(system: &SystemRoles) -> Vec<Diagnostic> {
                 message,
                 "add it to the formula of the role that executes it",
             );
-            found.with_nearest(&activity.name, named.iter().map(String::as_str))
+            found.with_suggestion(suggestions, &activity.name, named.iter().map(String::as_str))
         })
         .collect()
 }
 
-fn unknown_names(system: &SystemRoles, role: &Role) -> Vec<Diagnostic> {
+fn unknown_names(
+    system: &SystemRoles,
+    activities: &BTreeSet<&str>,
+    role: &Role,
+    suggestions: &Suggestions,
+) -> Vec<Diagnostic> {
     let known = || system.activities.iter().map(|activity| activity.name.as_str());
-    let unknown = names(role).into_iter().filter(|name| !known().any(|it| it == name));
+    let unknown = names(role).into_iter().filter(|name| !activities.contains(name.as_str()));
     unknown
         .map(|name| {
             let message = format!("`{name}` in the formulas of `{}` is no activity of the model", role.name);
             let found = warning("S05", role.liveness_place.0, message, "add an activity of that name");
-            found.with_nearest(&name, known())
+            found.with_suggestion(suggestions, &name, known())
         })
         .collect()
 }

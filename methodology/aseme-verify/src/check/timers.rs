@@ -6,7 +6,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::time::Duration;
 
-use yase::diagnostic::nearest;
+use yase::diagnostic::Suggestions;
 use yase::expression::{Expression, ExpressionKind, Trigger};
 use yase::{Diagnostic, NodeId, Span, TransitionId};
 
@@ -28,6 +28,7 @@ struct TimerCheck<'a> {
     started: BTreeMap<TimerKey, Span>,
     /// Names that are read: whether the form can only denote a timer, and where.
     read: BTreeMap<TimerKey, (bool, Span)>,
+    suggestions: Suggestions,
     /// Names of events that are awaited or deferred: the expiry of a timer is an event.
     events: BTreeSet<String>,
 }
@@ -48,32 +49,37 @@ impl<'a> TimerCheck<'a> {
             _ => None,
         }));
         events.extend(subject.chart.nodes().flat_map(|(_, node)| node.defer.iter().cloned()));
-        TimerCheck { subject, started, read, events }
+        TimerCheck { subject, started, read, suggestions: Suggestions::default(), events }
     }
 
     fn never_started(&self) -> Vec<Diagnostic> {
         let unset = self.read.iter().filter(|(timer, _)| !self.started.contains_key(*timer));
+        let mut boards: BTreeMap<&str, NodeId> = BTreeMap::new();
+        for (board, name) in self.started.keys() {
+            boards.entry(name).or_insert(*board);
+        }
         unset
-            .filter_map(|((board, name), &(is_sure, span))| self.not_started(*board, name, is_sure, span))
+            .filter_map(|((board, name), &(is_sure, span))| match boards.get(name.as_str()) {
+                Some(&other) => Some(self.started_elsewhere(*board, other, name, span)),
+                None => self.not_started(*board, name, is_sure, span),
+            })
             .collect()
+    }
+
+    fn started_elsewhere(&self, board: NodeId, other: NodeId, name: &str, span: Span) -> Diagnostic {
+        let message = format!(
+            "the timer `{name}` is read on the blackboard of `{}`, but started on that of `{}`",
+            self.subject.path(board),
+            self.subject.path(other)
+        );
+        let hint = "each region has its own timers: start it by a transition of the same region";
+        Diagnostic::warning("M19", span, message).with_hint(hint)
     }
 
     /// A bare name may also be a constant or a function; such names are not reported.
     fn not_started(&self, board: NodeId, name: &str, is_sure: bool, span: Span) -> Option<Diagnostic> {
-        let elsewhere = self.started.keys().find(|(_, other)| other == name);
-        if let Some((other, _)) = elsewhere {
-            let message = format!(
-                "the timer `{name}` is read on the blackboard of `{}`, but started on that of `{}`",
-                self.subject.path(board),
-                self.subject.path(*other)
-            );
-            let hint = "each region has its own timers: start it by a transition of the same region";
-            return Some(Diagnostic::warning("M19", span, message).with_hint(hint));
-        }
-        let near = nearest(
-            name,
-            self.started.keys().filter(|(it, _)| *it == board).map(|(_, other)| other.as_str()),
-        );
+        let of_board = self.started.range((board, String::new())..).take_while(|((it, _), _)| *it == board);
+        let near = self.suggestions.nearest(name, of_board.map(|((_, other), _)| other.as_str()));
         let is_constant = self.subject.chart.constants.iter().any(|constant| constant.name == name);
         let found =
             Diagnostic::warning("M19", span, format!("the timer `{name}` is read, but never started"));
@@ -90,15 +96,19 @@ impl<'a> TimerCheck<'a> {
             self.read.contains_key(&(*board, name.clone())) || self.events.contains(name)
         };
         let unread = self.started.iter().filter(|(timer, _)| !read(timer));
+        let names: BTreeSet<&str> = self.read.keys().map(|(_, name)| name.as_str()).collect();
         unread
-            .filter(|((_, name), _)| !self.read.keys().any(|(_, other)| other == name))
+            .filter(|((_, name), _)| !names.contains(name.as_str()))
             .map(|((_, name), &span)| {
                 let message = format!(
                     "the timer `{name}` is started, but no guard reads it and no trigger waits for it"
                 );
-                let read = self.read.keys().map(|(_, other)| other.as_str());
                 let hint = format!("read it with `[TimeoutCheck({name})]`, or do not start it");
-                Diagnostic::warning("M19", span, message).with_hint(hint).with_nearest(name, read)
+                Diagnostic::warning("M19", span, message).with_hint(hint).with_suggestion(
+                    &self.suggestions,
+                    name,
+                    names.iter().copied(),
+                )
             })
             .collect()
     }

@@ -6,7 +6,6 @@ use yase::expression::{Action, ActionKind, Expression, ExpressionKind, Transitio
 use yase::{Node, NodeId, Statechart, Transition, TransitionId};
 
 use super::{MutantCollector, MutantDescription, MutationKind};
-use aseme::path::shortest_path;
 
 /// A list of actions with one of them changed or removed.
 struct ActionVariant {
@@ -59,7 +58,8 @@ fn of_node(
         let mut chart = making.chart.clone();
         let what = format!("{when} {} {changed:?}", id.0);
         *actions(chart.node_mut(id)) = changed;
-        let place = format!("{} {when}", shortest_path(making.chart, id));
+        let names = &making.names;
+        let place = (format!("{} {when}", names.name(id)), names.path(id));
         making.add(&what, place, yase::Span::default(), description, chart);
     }
 }

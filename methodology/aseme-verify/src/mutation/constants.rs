@@ -47,7 +47,8 @@ pub(crate) fn all(making: &mut MutantCollector<'_>) {
                 wanted: format!("a case in which `{}` and {other} make a difference", constant.name),
             };
             let what = format!("constant {place} {other}");
-            making.add(&what, constant.name.clone(), span.unwrap_or_default(), mutation, chart);
+            let names = (constant.name.clone(), constant.name.clone());
+            making.add(&what, names, span.unwrap_or_default(), mutation, chart);
         }
     }
 }

@@ -7,7 +7,6 @@ use yase::{NodeId, NodeKind, Statechart, Transition, TransitionId};
 
 use super::{MutantCollector, MutantDescription, MutationKind};
 use crate::logic::{Claim, GuardSolver};
-use aseme::path::shortest_path;
 
 /// All mutants of the target, presence and order of a transition.
 pub(crate) fn of_transition(making: &mut MutantCollector<'_>, id: TransitionId) {
@@ -23,7 +22,7 @@ fn target(making: &mut MutantCollector<'_>, id: TransitionId) {
     let chart = making.chart;
     let before = chart.transition(id).target;
     let Some(after) = sibling(chart, before) else { return };
-    let (from, to) = (shortest_path(chart, before), shortest_path(chart, after));
+    let (from, to) = (making.names.name(before), making.names.name(after));
     let mutation = MutantDescription {
         kind: MutationKind::Target,
         change: format!("the target is `{to}`"),
@@ -78,7 +77,13 @@ fn priority(making: &mut MutantCollector<'_>, id: TransitionId) {
         }
     }
     let span = making.places.get(id.0 as usize).copied().unwrap_or_default();
-    making.add(&format!("priority {} {}", id.0, later.0), first, span, mutation, changed);
+    making.add(
+        &format!("priority {} {}", id.0, later.0),
+        (first, making.names.transition_path(id)),
+        span,
+        mutation,
+        changed,
+    );
 }
 
 /// The next transition of the same node, for the same event, in selection order.

@@ -18,5 +18,6 @@ mod property_language;
 mod protocol;
 mod several_protocols;
 mod shared;
+mod size;
 mod speed;
 mod traces;

@@ -83,7 +83,7 @@ fn a_long_sequence_is_checked_to_the_end() {
 /// which.
 #[test]
 fn an_exploration_says_why_it_ended() {
-    use aseme_verify::ProgressObserver;
+    use aseme_verify::{CheckProgress, ProgressObserver};
     use std::ops::ControlFlow;
     use yase_explore::ExplorationStop;
 
@@ -91,9 +91,9 @@ fn an_exploration_says_why_it_ended() {
     let source = Source::new("goalie.srm", std::fs::read_to_string(path).unwrap());
     let stop = |settings: &CheckSettings| check(&source, settings).explored.unwrap().stop;
     let mut settings = CheckSettings::default();
-    settings.observer = ProgressObserver::new(|progress| match progress.states < 100 {
-        true => ControlFlow::Continue(()),
-        false => ControlFlow::Break(()),
+    settings.observer = ProgressObserver::new(|progress| match progress {
+        CheckProgress::Exploring(progress) if progress.states >= 100 => ControlFlow::Break(()),
+        _ => ControlFlow::Continue(()),
     });
     assert_eq!(stop(&settings), Some(ExplorationStop::Observer));
     let mut settings = CheckSettings::default();

@@ -264,7 +264,7 @@ fn r13_terminate_leaves_nothing() {
 /// The codes of the errors under two semantics.
 fn codes(chart: &str) -> [Vec<&'static str>; 2] {
     [Semantics::yase(), Semantics::uml()].map(|semantics| {
-        let vocabulary = yase_reference::world::vocabulary();
+        let vocabulary = yase_reference::test_host::vocabulary();
         let found = yase_reference::chart(chart).compile_with(&vocabulary, semantics);
         found.err().unwrap_or_default().iter().map(|diagnostic| diagnostic.code).collect()
     })

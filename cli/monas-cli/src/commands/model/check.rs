@@ -94,7 +94,9 @@ pub(crate) fn execute(
             properties::json(&judged, console)?;
         }
         CheckFormat::Sarif => {
-            let findings = reports.iter().flat_map(|(_, report)| &report.findings);
+            let findings = reports
+                .iter()
+                .flat_map(|(_, report)| report.findings.iter().map(|it| (it, report.state_paths(it))));
             writeln!(console.out, "{:#}", sarif::document(findings))?;
         }
     }
@@ -120,6 +122,9 @@ fn checked(path: &Path, settings: &CheckSettings, all: bool) -> CheckReport {
     report
 }
 
+/// What is said of checks that Ctrl-C or the time limit ended.
+const STOPPED: &str = ", checks not finished (stopped, or the limit of time; see `--seconds`)";
+
 /// Prints the findings of all files, and, without properties, one line for each file without
 /// errors.
 fn text(
@@ -135,8 +140,9 @@ fn text(
         if let Some(what) = report.what.as_ref().filter(|_| is_told && !report.has_errors()) {
             writeln!(
                 console.out,
-                "{}: {what}{}, no errors",
+                "{}: {what}{}{}, no errors",
                 config::shown_name(path),
+                if report.is_stopped { STOPPED } else { "" },
                 extent(report.explored.as_ref())
             )?;
         }
@@ -146,8 +152,14 @@ fn text(
 
 /// One object per line; a finding with a trace has it as `trace`.
 fn json(reports: &[(&Path, CheckReport)], console: &mut CommandOutput<'_>) -> Result<(), CommandFailure> {
-    for finding in reports.iter().flat_map(|(_, report)| &report.findings) {
-        writeln!(console.err, "{}", finding::object(finding))?;
+    let findings = reports.iter().flat_map(|(_, report)| report.findings.iter().map(move |it| (it, report)));
+    for (finding, report) in findings {
+        let mut object = finding::object(finding);
+        let states = report.state_paths(finding);
+        if let (false, Some(fields)) = (states.is_empty(), object.as_object_mut()) {
+            fields.insert("states".into(), states.into_iter().collect());
+        }
+        writeln!(console.err, "{object}")?;
     }
     Ok(())
 }

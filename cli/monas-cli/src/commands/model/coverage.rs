@@ -134,7 +134,7 @@ fn write_text(covered: &ChartCounts, console: &mut CommandOutput<'_>) -> Result<
 /// A chart's coverage as JSON.
 fn object(covered: &ChartCounts) -> Value {
     let names = |kind: &str| -> Vec<String> {
-        covered.missed().into_iter().filter(|missed| missed.what == kind).map(|missed| missed.name).collect()
+        covered.missed().into_iter().filter(|missed| missed.what == kind).map(|missed| missed.path).collect()
     };
     json!({
         "kind": "coverage",

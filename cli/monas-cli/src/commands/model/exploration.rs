@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 use std::sync::Mutex;
 use std::time::Duration;
 
-use aseme_verify::{CheckSettings, ExplorationExtent, ProgressObserver};
+use aseme_verify::{CheckProgress, CheckSettings, ExplorationExtent, ProgressObserver};
 use clap::Args;
 use indicatif::ProgressBar;
 use yase_explore::{ExplorationProgress, ExplorationStop};
@@ -74,17 +74,19 @@ struct ProgressDisplay {
 }
 
 impl ProgressDisplay {
-    fn show(&self, elapsed: Duration, progress: ExplorationProgress) {
+    fn show(&self, elapsed: Duration, progress: CheckProgress) {
         let Ok(mut next) = self.next.lock() else { return };
         if self.bar.is_none() || elapsed < *next {
             return;
         }
-        let ExplorationProgress { states, open, bytes, .. } = progress;
-        let line = format!(
-            "{} s: {states} states, {open} of them to be expanded, {} MiB; Ctrl-C gives what is known",
-            elapsed.as_secs(),
-            bytes >> 20
-        );
+        let done = match progress {
+            CheckProgress::Checking { done, of } => format!("{done} of {of} parts checked"),
+            CheckProgress::Exploring(ExplorationProgress { states, open, bytes }) => {
+                format!("{states} states, {open} of them to be expanded, {} MiB", bytes >> 20)
+            }
+            _ => String::new(),
+        };
+        let line = format!("{} s: {done}; Ctrl-C gives what is known", elapsed.as_secs());
         self.bar.iter().for_each(|bar| {
             bar.set_message(line.clone());
             bar.tick();

@@ -6,6 +6,7 @@ use yase::expression::Trigger;
 use yase::{Diagnostic, NodeId, NodeKind, TransitionId};
 
 use super::GuardCheck;
+use crate::check_settings::CheckedParts;
 use crate::logic::Claim;
 
 /// Nodes with more outgoing transitions than this have only neighbouring ones compared.
@@ -126,7 +127,7 @@ impl GuardCheck<'_> {
     }
 
     /// M10: an event on which one region leaves the AND while another would stay.
-    pub(crate) fn conflicting_regions(&self) -> Vec<Diagnostic> {
+    pub(crate) fn conflicting_regions(&self, parts: &CheckedParts<'_>) -> Vec<Diagnostic> {
         let with_trigger = |id: &TransitionId| self.subject.trigger(*id).is_some();
         let waiting: Vec<TransitionId> =
             self.subject.chart.transitions().map(|(id, _)| id).filter(with_trigger).collect();
@@ -141,6 +142,9 @@ impl GuardCheck<'_> {
         }
         let mut found = Vec::new();
         for &leaving in waiting.iter().filter(|&&id| self.leaves_and(id)) {
+            if !parts.go_on_after(0) {
+                break;
+            }
             let others: BTreeSet<TransitionId> = match self.subject.trigger(leaving).and_then(names) {
                 Some(names) => names
                     .iter()

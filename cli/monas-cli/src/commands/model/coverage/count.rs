@@ -3,7 +3,7 @@
 use std::cmp::Reverse;
 use std::fmt;
 
-use aseme::path::{shortest_path, shortest_transition};
+use aseme_verify::DiagnosticNames;
 use monas::records;
 use yase::{NodeId, NodeKind, Statechart, Transition, TransitionId};
 
@@ -43,6 +43,8 @@ impl fmt::Display for Fraction {
 pub(crate) struct UncoveredElement {
     pub(crate) what: &'static str,
     pub(crate) name: String,
+    /// The same with paths.
+    pub(crate) path: String,
     /// The transition; has no meaning for a state.
     pub(crate) transition: TransitionId,
 }
@@ -133,15 +135,18 @@ impl ChartCounts {
 
     /// All elements that were not covered: states, transitions, guards.
     pub(crate) fn missed(&self) -> Vec<UncoveredElement> {
+        let names = DiagnosticNames::new(&self.chart);
         let states = self.basics().filter(|id| self.entered[id.0 as usize] == 0).map(|id| UncoveredElement {
             what: NEVER_ACTIVE,
-            name: shortest_path(&self.chart, id),
+            name: names.name(id),
+            path: names.path(id),
             transition: TransitionId(u32::MAX),
         });
         let missed = |what, transition| {
             let expression = &self.chart.transition(transition).expression;
             let colon = if expression.is_empty() { String::new() } else { format!(" : {expression}") };
-            UncoveredElement { what, name: shortest_transition(&self.chart, transition) + &colon, transition }
+            let (name, path) = (names.transition(transition), names.transition_path(transition));
+            UncoveredElement { what, name: name + &colon, path: path + &colon, transition }
         };
         let unfired = self.meant().map(|(id, _)| id).filter(|id| self.fired[id.0 as usize] == 0);
         let unrefused = self.refusable().filter(|id| self.refused[id.0 as usize] == 0);

@@ -166,6 +166,7 @@ impl MutationReport<'_> {
         json!({
             "kind": "mutant",
             "name": mutant.name,
+            "path": mutant.path,
             "change": mutant.kind.word(),
             "description": mutant.description,
             "wanted": mutant.wanted,

@@ -1,4 +1,4 @@
-//! A machine in the reference's world, and the work of a host when the chart is migrated.
+//! A machine with the reference's host, and what a host does when the chart is migrated.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -7,12 +7,12 @@ use yase::migrate::{MigrationError, MigrationReport, NodeMapping, plan};
 use yase::{CompiledChart, Machine, Outcome, Semantics, Timestamp};
 
 use yase_reference::script;
-use yase_reference::world::World;
+use yase_reference::test_host::TestHost;
 
-/// A machine that runs, in its world.
+/// A running machine and its host.
 pub(crate) struct Stage {
     pub(crate) machine: Machine,
-    pub(crate) world: World,
+    pub(crate) host: TestHost,
 }
 
 impl Stage {
@@ -23,10 +23,10 @@ impl Stage {
 
     pub(crate) fn with(semantics: Semantics, chart: &str, events: &[&str]) -> Stage {
         let chart = yase_reference::chart(chart);
-        let mut world = World::new(&chart);
+        let mut host = TestHost::new(&chart);
         let mut machine = Machine::new(script::compile_with(&chart, semantics));
-        machine.start(Timestamp::ZERO, &mut world);
-        let mut stage = Stage { machine, world };
+        machine.start(Timestamp::ZERO, &mut host);
+        let mut stage = Stage { machine, host };
         stage.step(0);
         for event in events {
             stage.event(event);
@@ -35,8 +35,8 @@ impl Stage {
     }
 
     pub(crate) fn step(&mut self, millis: u64) {
-        self.world.now = Timestamp::from_millis(millis);
-        self.machine.run_to_completion(self.world.now, &mut self.world).unwrap();
+        self.host.now = Timestamp::from_millis(millis);
+        self.machine.run_to_completion(self.host.now, &mut self.host).unwrap();
     }
 
     pub(crate) fn event(&mut self, name: &str) {
@@ -46,7 +46,7 @@ impl Stage {
 
     /// The only activity that runs returns.
     pub(crate) fn returns(&mut self) {
-        let job = self.world.jobs.remove(0);
+        let job = self.host.jobs.remove(0);
         assert!(self.machine.activity_returned(job.activation, Outcome::Done), "it is still known");
         self.step(0);
     }
@@ -60,7 +60,7 @@ impl Stage {
 
     pub(crate) fn swap(&mut self, plan: &NodeMapping) -> Result<MigrationReport, MigrationError> {
         let report = self.machine.swap(plan)?;
-        rekey(&mut self.world, self.machine.chart(), &report);
+        rekey(&mut self.host, self.machine.chart(), &report);
         Ok(report)
     }
 
@@ -82,23 +82,23 @@ impl Stage {
 
     /// The lines logged since the last call.
     pub(crate) fn lines(&mut self) -> String {
-        let lines = std::mem::take(&mut self.world.log);
+        let lines = std::mem::take(&mut self.host.log);
         lines.iter().map(|line| line.trim()).collect::<Vec<_>>().join("\n")
     }
 }
 
-/// The work of a host: activities and blackboards get new indices.
-pub(crate) fn rekey(world: &mut World, chart: &Arc<CompiledChart>, report: &MigrationReport) {
+/// What a host does at a migration: activities and blackboards get new indices.
+pub(crate) fn rekey(host: &mut TestHost, chart: &Arc<CompiledChart>, report: &MigrationReport) {
     let activations: BTreeMap<_, _> = report.activations.iter().copied().collect();
-    for job in &mut world.jobs {
+    for job in &mut host.jobs {
         if let Some(&activation) = activations.get(&job.activation) {
             job.activation = activation;
         }
     }
-    let mut boards = std::mem::take(&mut world.boards);
+    let mut boards = std::mem::take(&mut host.boards);
     let kept = report.regions.iter().filter_map(|(old, new)| Some((*new, boards.remove(old)?)));
-    world.boards = kept.collect();
-    world.activities = World::new(chart.statechart()).activities;
+    host.boards = kept.collect();
+    host.activities = TestHost::new(chart.statechart()).activities;
 }
 
 /// The findings of a report, one a line.

@@ -83,7 +83,7 @@ pub struct Job {
 
 /// The host of the tests.
 #[derive(Clone, Default, Debug)]
-pub struct World {
+pub struct TestHost {
     /// The time of the step.
     pub now: Timestamp,
     /// The blackboard of each scope.
@@ -104,14 +104,14 @@ pub struct World {
     pub activities: BTreeMap<yase::NodeId, (String, Duration)>,
 }
 
-impl World {
-    /// The world of a chart, before anything has happened.
-    pub fn new(chart: &yase::Statechart) -> World {
+impl TestHost {
+    /// The host of a chart, before anything has happened.
+    pub fn new(chart: &yase::Statechart) -> TestHost {
         let activities = chart
             .nodes()
             .filter_map(|(id, node)| Some((id, (node.activity.clone()?, node.duration.unwrap_or_default()))))
             .collect();
-        World { activities, ..World::default() }
+        TestHost { activities, ..TestHost::default() }
     }
 
     /// Logs a line.
@@ -119,7 +119,7 @@ impl World {
         self.log.push(text.into());
     }
 
-    fn whisper(&mut self, text: String) {
+    fn log_if_verbose(&mut self, text: String) {
         if self.verbose {
             self.log.push(text);
         }
@@ -157,7 +157,7 @@ impl World {
     }
 }
 
-impl Host for World {
+impl Host for TestHost {
     fn field(&self, region: ScopeId, source: &MessageSource, path: &[FieldId]) -> Value<'_> {
         assert_eq!(path, [FieldId(0)]);
         self.number(region, source.topic).map_or(Value::Missing, Value::Int)
@@ -179,13 +179,13 @@ impl Host for World {
         let board = self.board(region);
         let inbox = std::mem::take(&mut board.inbox);
         board.shown.extend(inbox);
-        self.whisper(format!("  deliver {}", region.0));
+        self.log_if_verbose(format!("  deliver {}", region.0));
     }
 
     fn inherit(&mut self, region: ScopeId, from: ScopeId) {
         let around = self.board(from).clone();
         *self.board(region) = Board { outbox: BTreeSet::new(), ..around };
-        self.whisper(format!("  inherit {} from {}", region.0, from.0));
+        self.log_if_verbose(format!("  inherit {} from {}", region.0, from.0));
     }
 
     fn assign(
@@ -216,7 +216,7 @@ impl Host for World {
         let board = self.board(region);
         board.shown.insert(topic, number);
         board.outbox.insert(topic);
-        self.whisper(format!("  {} on {} = {}", TOPICS[topic.0 as usize], region.0, number.n));
+        self.log_if_verbose(format!("  {} on {} = {}", TOPICS[topic.0 as usize], region.0, number.n));
         Ok(())
     }
 
@@ -237,7 +237,7 @@ impl Host for World {
             }
             self.arrivals.push(topic);
         }
-        self.whisper(format!("  publish {}", region.0));
+        self.log_if_verbose(format!("  publish {}", region.0));
     }
 
     fn start(&mut self, activation: Activation) {
