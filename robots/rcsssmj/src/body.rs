@@ -62,16 +62,18 @@ impl T1 {
     pub(crate) fn open(address: Option<&str>, options: &Options) -> Result<T1, Error> {
         let walk = walk(options)?;
         let lockstep = !options.realtime;
-        let mut server = match address {
-            Some(_) => None,
-            None => Some(Server::start(options.server.as_deref(), lockstep)?),
+        let (server, monitor, connection) = match address {
+            Some(address) => {
+                let monitor = options.monitor.as_deref().map(Monitor::connect).transpose()?;
+                (None, monitor, Connection::open(address)?)
+            }
+            None => {
+                let mut server = Server::start(options.server.as_deref(), lockstep)?;
+                let monitor = server.monitor()?;
+                let connection = Connection::open(server.agents())?;
+                (Some(server), Some(monitor), connection)
+            }
         };
-        let connection = match &mut server {
-            Some(server) => server.connect()?,
-            None => Connection::open(address.unwrap_or(ADDRESS))?,
-        };
-        let monitors = server.as_ref().map(Server::monitors).or(options.monitor.as_deref());
-        let monitor = monitors.map(Monitor::connect).transpose()?;
         let mut rules = MatchRules::new(options.team.clone(), options.number, options.field);
         rules.half = options.half;
         let mut body = T1 {
@@ -125,10 +127,9 @@ impl T1 {
         self.message.clear();
         self.message.beam(x, y, heading);
         self.answer()?;
-        let mut settled = 0;
-        while settled < SETTLING {
+        self.receive()?;
+        for _ in 0..SETTLING {
             self.exchange()?;
-            settled += 1;
         }
         if options.kick_off && self.monitor.is_some() {
             self.kick_off()?;

@@ -133,8 +133,8 @@ impl T1Control {
     /// Adds the motion of the torso over the foot on the ground to the odometry.
     fn measure_step(&mut self, before: &Stance) {
         let turned = self.inertia.turn(self.percept.gyro) * CYCLE_SECONDS;
-        let foot = self.stance.support();
-        let (from, to) = (before.hips_from(foot), self.stance.hips_from(foot));
+        let corner = self.stance.contact();
+        let (from, to) = (before.hips_from(corner), self.stance.hips_from(corner));
         let (sin, cos) = libm::sincos(turned);
         let (x, y) = (cos * to.x - sin * to.y - from.x, sin * to.x + cos * to.y - from.y);
         let [all_x, all_y, heading] = self.odometry;

@@ -49,6 +49,14 @@ pub fn sole(foot: Foot, angles: &JointValues) -> Point3<f64> {
     in_torso(Point3::new(0.0, 0.0, -SOLE), foot.last_joint(), angles)
 }
 
+/// The corners of a sole below the last joint of the leg, m: those of the foot's box.
+const CORNERS: [Point3<f64>; 4] = [
+    Point3::new(0.1215, 0.05, -SOLE),
+    Point3::new(0.1215, -0.05, -SOLE),
+    Point3::new(-0.1015, 0.05, -SOLE),
+    Point3::new(-0.1015, -0.05, -SOLE),
+];
+
 /// A point in the direction that the camera sees it, in the torso frame.
 pub fn seen_in_torso(seen: &Polar, angles: &JointValues) -> Point3<f64> {
     let (sin_elevation, cos_elevation) = libm::sincos(seen.elevation);
@@ -65,32 +73,41 @@ pub struct Stance {
     level_from_torso: UnitQuaternion<f64>,
     /// The middle between the hips.
     hips: Point3<f64>,
-    /// The soles, left and right.
-    soles: [Point3<f64>; 2],
+    /// The corners of the soles, those of the left one first.
+    corners: [Point3<f64>; 8],
 }
 
 impl Stance {
     /// From the joints and the unit vector that points down, in the torso frame.
     pub fn new(angles: &JointValues, down: &Vector3<f64>) -> Stance {
         let level_from_torso = level_from_torso(down);
-        let in_level = |point: Point3<f64>| level_from_torso * point;
-        let soles = [Foot::Left, Foot::Right].map(|foot| in_level(sole(foot, angles)));
-        Stance { level_from_torso, hips: in_level(HIPS), soles }
+        let mut corners = [Point3::origin(); 8];
+        for (index, corner) in corners.iter_mut().enumerate() {
+            let foot = if index < CORNERS.len() { Foot::Left } else { Foot::Right };
+            let below_foot = CORNERS[index % CORNERS.len()];
+            *corner = level_from_torso * in_torso(below_foot, foot.last_joint(), angles);
+        }
+        Stance { level_from_torso, hips: level_from_torso * HIPS, corners }
     }
 
-    /// The foot that stands lower.
-    pub fn support(&self) -> Foot {
-        if self.soles[0].z <= self.soles[1].z { Foot::Left } else { Foot::Right }
+    /// The corner of a sole that is lowest: it stands on the ground. Feet roll over their edges, so
+    /// that the middle of a sole does not stand still.
+    pub fn contact(&self) -> usize {
+        let lower = |one: usize, other: usize| match self.corners[other].z < self.corners[one].z {
+            true => other,
+            false => one,
+        };
+        (1..self.corners.len()).fold(0, lower)
     }
 
-    /// From a foot to the middle between the hips.
-    pub fn hips_from(&self, foot: Foot) -> Vector3<f64> {
-        self.hips - self.soles[foot as usize]
+    /// From a corner to the middle between the hips.
+    pub fn hips_from(&self, corner: usize) -> Vector3<f64> {
+        self.hips - self.corners[corner]
     }
 
     /// A point of the torso frame in the robot frame.
     pub fn on_ground(&self, in_torso: &Point3<f64>) -> Point3<f64> {
-        let ground = self.soles[self.support() as usize].z;
+        let ground = self.corners[self.contact()].z;
         let in_level = self.level_from_torso * in_torso;
         Point3::new(in_level.x - self.hips.x, in_level.y - self.hips.y, in_level.z - ground)
     }
@@ -135,7 +152,7 @@ mod tests {
         angles[LEFT_LEG + 3] = FRAC_PI_2;
         let lifted = sole(Foot::Left, &angles);
         assert!((lifted.z - (-STRAIGHT_HEIGHT + 0.322)).abs() < 1e-3 && lifted.x < -0.25, "{lifted}");
-        assert_eq!(Stance::new(&angles, &-Vector3::z()).support(), Foot::Right);
+        assert!(Stance::new(&angles, &-Vector3::z()).contact() >= 4, "the right foot stands");
     }
 
     /// The ball of the server's own example: 5 m ahead of a straight stand, on the ground.

@@ -82,6 +82,13 @@ impl Monitor {
         Ok(Monitor { connection, game: MonitoredGame::default(), command: String::new() })
     }
 
+    /// Waits for the first message: the server makes its cycles.
+    pub(crate) fn begun(mut self) -> Result<Monitor, Error> {
+        let game = &mut self.game;
+        self.connection.receive(|message| game.decode(message))?;
+        Ok(self)
+    }
+
     /// Reads what has arrived, without waiting, and returns the newest state of the game.
     ///
     /// # Errors

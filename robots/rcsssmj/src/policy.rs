@@ -11,7 +11,7 @@ use std::path::Path;
 
 use monas_robot::Limits;
 
-use crate::anatomy::{JOINTS, limits};
+use crate::anatomy::JOINTS;
 use crate::effector::MotorCommand;
 use crate::error::Error;
 use crate::walk::{Gait, Motion, Motors, WalkEngine, WalkVelocity};
@@ -53,8 +53,10 @@ const FLIP: [f32; JOINTS] = [
 const GAINS: (f64, f64) = (25.0, 0.6);
 /// Greatest size of inputs and outputs.
 const CLIP: f32 = 10.0;
-/// Below this speed ahead, m/s, and turn, rad/s, steps to a side make the robot fall.
+/// Below this speed ahead, m/s, steps to a side alone make the robot fall.
 const ALONGSIDE: f64 = 0.15;
+/// From this turn on, rad/s, half of a step to a side is safe.
+const TURNING: f64 = 0.3;
 
 /// The network with its last output.
 pub struct PolicyWalk {
@@ -196,14 +198,15 @@ impl WalkEngine for PolicyWalk {
     }
 
     fn advance(&mut self, velocity: WalkVelocity, motion: &Motion, motors: &mut Motors) {
-        let along = (velocity.x.abs() / ALONGSIDE).max(velocity.turn.abs() / ALONGSIDE).min(1.0);
+        let turning = (velocity.turn.abs() / TURNING).min(1.0) / 2.0;
+        let along = (velocity.x.abs() / ALONGSIDE).min(1.0).max(turning);
         self.observe(WalkVelocity { y: velocity.y * along, ..velocity }, motion);
         self.infer();
         for (joint, motor) in motors.iter_mut().enumerate() {
             let target = (NOMINAL[joint] + 0.5 * self.action[joint]) * FLIP[joint];
-            let angle = limits(joint).clamp(target.into());
-            *motor =
-                MotorCommand { angle, stiffness: GAINS.0, damping: GAINS.1, ..MotorCommand::default() };
+            // Also beyond the limits of a joint: the network uses targets as torques.
+            let (angle, (stiffness, damping)) = (target.into(), GAINS);
+            *motor = MotorCommand { angle, stiffness, damping, ..MotorCommand::default() };
         }
     }
 
@@ -290,5 +293,7 @@ mod tests {
         assert_eq!(walk.input[3 * JOINTS + 4], 0.0);
         walk.advance(WalkVelocity { x: 0.3, ..aside }, &STILL, &mut motors);
         assert_eq!(walk.input[3 * JOINTS + 4], 0.2);
+        walk.advance(WalkVelocity { turn: 0.5, ..aside }, &STILL, &mut motors);
+        assert_eq!(walk.input[3 * JOINTS + 4], 0.1);
     }
 }

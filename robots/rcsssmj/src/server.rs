@@ -6,8 +6,8 @@ use std::path::PathBuf;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
-use crate::connection::Connection;
 use crate::error::Error;
+use crate::monitor::Monitor;
 
 /// The program, as its package installs it.
 pub(crate) const PROGRAM: &str = "rcssservermj";
@@ -75,12 +75,13 @@ impl Server {
         &self.monitors
     }
 
-    /// Connects to the server as an agent, once it answers.
-    pub(crate) fn connect(&mut self) -> Result<Connection, Error> {
+    /// A monitor of the server, once it makes its cycles. Version 0.2.1 ends with an error when an
+    /// agent joins in the first one.
+    pub(crate) fn monitor(&mut self) -> Result<Monitor, Error> {
         let begun = Instant::now();
         loop {
-            match Connection::open(&self.agents) {
-                Ok(connection) => return Ok(connection),
+            match Monitor::connect(&self.monitors).and_then(Monitor::begun) {
+                Ok(monitor) => return Ok(monitor),
                 Err(error) if begun.elapsed() > STARTING => return Err(error),
                 Err(_) => {}
             }
@@ -128,7 +129,7 @@ mod tests {
     #[test]
     fn a_program_that_ends_is_reported_with_its_status() {
         let mut server = Server::start(Some("false"), true).unwrap();
-        let error = server.connect().unwrap_err().to_string();
+        let error = server.monitor().unwrap_err().to_string();
         assert!(error.starts_with("the server has ended, exit status: 1"), "{error}");
     }
 }

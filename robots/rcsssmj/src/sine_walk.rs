@@ -185,14 +185,14 @@ impl SineWalk {
         let lift = libm::sin(self.clock);
         let swing = libm::cos(self.clock + walk.phase) * self.stepping;
         let stride = walk.stride * velocity.x / walk.speed;
-        let yaw = walk.turn * velocity.turn / walk.turn_rate * swing;
+        let yaw = walk.turn * velocity.turn / walk.turn_rate;
         let crouch = walk.crouch * self.crouched;
         for (leg, side) in [(LEFT_LEG, 1.0), (RIGHT_LEG, -1.0)] {
             let up = (side * lift).max(0.0) * walk.lift * self.stepping;
             let ahead = side * swing * stride;
             angles[leg] = ahead - crouch - up;
             angles[leg + 1] = walk.sway * lift * self.stepping;
-            angles[leg + 2] = yaw;
+            angles[leg + 2] = side * swing * yaw;
             angles[leg + 3] = walk.knee * crouch + 2.0 * up;
             let level = -(walk.knee - 1.0) * crouch - up - ahead;
             angles[leg + 4] = level + walk.lean * self.crouched + walk.gyro_pitch * gyro[1];
