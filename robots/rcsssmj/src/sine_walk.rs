@@ -192,7 +192,7 @@ impl SineWalk {
             let ahead = side * swing * stride;
             angles[leg] = ahead - crouch - up;
             angles[leg + 1] = walk.sway * lift * self.stepping;
-            angles[leg + 2] = side * swing * yaw;
+            angles[leg + 2] = -side * swing * yaw;
             angles[leg + 3] = walk.knee * crouch + 2.0 * up;
             let level = -(walk.knee - 1.0) * crouch - up - ahead;
             angles[leg + 4] = level + walk.lean * self.crouched + walk.gyro_pitch * gyro[1];

@@ -1,4 +1,5 @@
-//! `monas run`: runs a match in simulated time, or a set of agents in real time.
+//! `monas run`: runs a match in simulated time, or a set of agents in real time; agents with a body
+//! that has its own time in the time of that body.
 
 mod control;
 #[cfg(feature = "soccer")]
@@ -8,8 +9,8 @@ mod field_view;
 #[cfg(feature = "soccer")]
 mod league;
 mod links;
+mod lockstep;
 mod outputs;
-#[cfg(feature = "soccer")]
 mod pacer;
 #[cfg(feature = "soccer")]
 mod play;
@@ -118,11 +119,6 @@ pub(crate) fn execute(
     #[cfg(unix)]
     if arguments.listen.is_given() && !arguments.studio {
         return Err(CommandFailure::Usage("--listen is for the studio: add --studio".into()));
-    }
-    if kind == ConfigurationKind::Agents && arguments.pace.is_some() {
-        return Err(CommandFailure::Usage(
-            "--pace is for simulated time; these agents run in real time".into(),
-        ));
     }
     #[cfg(feature = "soccer")]
     if kind == ConfigurationKind::Agents && arguments.league.is_given() {

@@ -8,7 +8,7 @@ use monas_studio::Pace;
 use monas_tape::Tape;
 
 use super::outputs::RecordingAlarm;
-use super::pacer::Pacer;
+use super::pacer::{Pacer, factor};
 use super::{RunArguments, control, outputs, scoreboard, summary};
 use crate::terminal::{CommandFailure, CommandOutput, Exit, Interrupt, WallClock, report};
 
@@ -99,14 +99,4 @@ fn play(
     }
     alarm.check(running.simulation().now());
     Ok(running)
-}
-
-/// The pace at the beginning.
-fn factor(arguments: &RunArguments) -> f64 {
-    #[cfg(unix)]
-    let is_viewed = arguments.studio;
-    #[cfg(not(unix))]
-    let is_viewed = false;
-    let unlimited = if arguments.realtime || is_viewed { 1.0 } else { f64::INFINITY };
-    arguments.pace.unwrap_or(unlimited)
 }
