@@ -20,7 +20,7 @@ const LYING: f64 = 1.0;
 /// A torso that is less inclined than this is upright, rad.
 const UPRIGHT: f64 = 0.4;
 /// How far the robot runs for a kick, m.
-const RUN: f64 = 1.0;
+const RUN: f64 = 1.4;
 /// How long it stands after a kick before the skill is over, s: it comes to a halt.
 const HALT: f64 = 0.6;
 /// Torque per angle and per angular velocity of a joint of a leg, and of another one, that is

@@ -53,9 +53,7 @@ const FLIP: [f32; JOINTS] = [
 const GAINS: (f64, f64) = (25.0, 0.6);
 /// Greatest size of inputs and outputs.
 const CLIP: f32 = 10.0;
-/// Below this speed ahead, m/s, steps to a side alone make the robot fall.
-const ALONGSIDE: f64 = 0.15;
-/// From this turn on, rad/s, half of a step to a side is safe.
+/// From this turn on, rad/s, only half of a step to a side is safe.
 const TURNING: f64 = 0.3;
 
 /// The network with its last output.
@@ -193,14 +191,13 @@ impl WalkEngine for PolicyWalk {
             x: Limits::new(-0.8, 1.1),
             y: Limits::symmetric(0.2),
             turn: Limits::symmetric(1.2),
-            run: 1.0,
+            run: 1.1,
         }
     }
 
     fn advance(&mut self, velocity: WalkVelocity, motion: &Motion, motors: &mut Motors) {
-        let turning = (velocity.turn.abs() / TURNING).min(1.0) / 2.0;
-        let along = (velocity.x.abs() / ALONGSIDE).min(1.0).max(turning);
-        self.observe(WalkVelocity { y: velocity.y * along, ..velocity }, motion);
+        let aside = 1.0 - (velocity.turn.abs() / TURNING).min(1.0) / 2.0;
+        self.observe(WalkVelocity { y: velocity.y * aside, ..velocity }, motion);
         self.infer();
         for (joint, motor) in motors.iter_mut().enumerate() {
             let target = (NOMINAL[joint] + 0.5 * self.action[joint]) * FLIP[joint];
@@ -285,15 +282,13 @@ mod tests {
     }
 
     #[test]
-    fn steps_to_a_side_alone_are_not_asked_for() {
+    fn steps_to_a_side_are_halved_in_a_turn() {
         let mut walk = PolicyWalk::from_bytes(&weights(&[])).unwrap();
         let mut motors = [MotorCommand::default(); JOINTS];
         let aside = WalkVelocity { y: 0.2, ..WalkVelocity::default() };
         walk.advance(aside, &STILL, &mut motors);
-        assert_eq!(walk.input[3 * JOINTS + 4], 0.0);
-        walk.advance(WalkVelocity { x: 0.3, ..aside }, &STILL, &mut motors);
         assert_eq!(walk.input[3 * JOINTS + 4], 0.2);
-        walk.advance(WalkVelocity { turn: 0.5, ..aside }, &STILL, &mut motors);
+        walk.advance(WalkVelocity { turn: -0.5, ..aside }, &STILL, &mut motors);
         assert_eq!(walk.input[3 * JOINTS + 4], 0.1);
     }
 }
