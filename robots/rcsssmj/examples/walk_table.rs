@@ -28,14 +28,15 @@ const POLICY: [[f64; 3]; 11] = [
     [0.3, 0.2, 0.0],
     [0.0, 0.2, -0.5],
 ];
-const OWN: [[f64; 3]; 7] = [
+const OWN: [[f64; 3]; 8] = [
     [0.0, 0.0, 0.0],
     [0.15, 0.0, 0.0],
-    [9.0, 0.0, 0.0],
-    [-0.1, 0.0, 0.0],
-    [0.0, 0.0, 9.0],
-    [0.1, 0.0, -9.0],
-    [9.0, 0.0, 9.0],
+    [0.25, 0.0, 0.0],
+    [0.42, 0.0, 0.0],
+    [0.0, 0.0, 0.45],
+    [0.0, 0.0, -0.2],
+    [0.2, 0.0, -0.45],
+    [0.42, 0.0, 0.2],
 ];
 
 /// Cycles of the start and of the measurement.
@@ -75,10 +76,14 @@ impl Trial {
 
     /// Puts the robot up, has it walk, and prints a row.
     fn run(&mut self, [x, y, turn]: [f64; 3]) -> Result<(), Box<dyn std::error::Error>> {
+        let stand = Actuators::default();
+        // Who is placed while walking has its joints moved by the commands of the walk.
+        for _ in 0..START {
+            self.cycle(&stand)?;
+        }
         if let Some(monitor) = self.body.monitor() {
             monitor.place_robot("Monas", 2, [-12.0, 5.0, 0.68], 0.0)?;
         }
-        let stand = Actuators::default();
         for _ in 0..START {
             self.cycle(&stand)?;
         }

@@ -148,7 +148,9 @@ mod tests {
     fn the_right_side_mirrors_the_left() {
         let still = Limits::symmetric(0.0);
         let anatomy = anatomy(still, still, still);
-        for (index, left) in anatomy.joints.iter().enumerate().filter(|(_, joint)| joint.name.starts_with('L')) {
+        for (index, left) in
+            anatomy.joints.iter().enumerate().filter(|(_, joint)| joint.name.starts_with('L'))
+        {
             let right = anatomy.joint(&left.name.replacen('L', "R", 1)).unwrap();
             assert_eq!(right - index, if index < LEFT_LEG { 4 } else { 6 }, "{}", left.name);
             let (joint, [x, y, z]) = (&anatomy.joints[right], left.offset);

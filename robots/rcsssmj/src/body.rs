@@ -243,7 +243,9 @@ impl T1 {
 /// The walk that the options name.
 fn walk(options: &Options) -> Result<Box<dyn WalkEngine>, Error> {
     match (&options.policy, &options.walk) {
-        (Some(_), Some(_)) => Err(Error::configuration("a robot walks by a `policy` or by a `walk`, not by both")),
+        (Some(_), Some(_)) => {
+            Err(Error::configuration("a robot walks by a `policy` or by a `walk`, not by both"))
+        }
         (Some(policy), None) => Ok(Box::new(PolicyWalk::load(policy)?)),
         (None, Some(file)) => Ok(Box::new(SineWalk::new(SineParameters::load(file)?))),
         (None, None) => Ok(Box::new(SineWalk::new(SineParameters::own()?))),

@@ -27,7 +27,8 @@ pub(crate) struct Connection {
 impl Connection {
     /// Connects to an address such as `127.0.0.1:60000`.
     pub(crate) fn open(address: &str) -> Result<Connection, Error> {
-        let failed = |error: std::io::Error| Error::disconnected(format!("{address} does not answer: {error}"));
+        let failed =
+            |error: std::io::Error| Error::disconnected(format!("{address} does not answer: {error}"));
         let mut last = None;
         for place in address.to_socket_addrs().map_err(failed)? {
             match TcpStream::connect_timeout(&place, CONNECTING) {

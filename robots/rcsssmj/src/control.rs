@@ -103,10 +103,8 @@ impl T1Control {
     pub(crate) fn receive(&mut self, message: &[u8], rules: &MatchRules) -> Result<(), crate::Error> {
         self.percept.decode(message)?;
         self.inertia.advance(self.percept.gyro, self.percept.acceleration, CYCLE_SECONDS);
-        let before = std::mem::replace(
-            &mut self.stance,
-            Stance::new(&self.percept.positions, &self.inertia.down()),
-        );
+        let before =
+            std::mem::replace(&mut self.stance, Stance::new(&self.percept.positions, &self.inertia.down()));
         let tilt = self.tilt();
         self.is_fallen = tilt > LYING || (self.is_fallen && tilt > UPRIGHT);
         if tilt < UPRIGHT {
@@ -260,7 +258,9 @@ impl T1Control {
         }
         self.skill_number = number;
         self.activity = match (self.activity, skill) {
-            (Activity::Walking, Skill::KickLeft | Skill::KickRight) if !self.is_fallen => Activity::Kicking(0.0),
+            (Activity::Walking, Skill::KickLeft | Skill::KickRight) if !self.is_fallen => {
+                Activity::Kicking(0.0)
+            }
             (Activity::Walking, Skill::StandUp) if self.is_fallen => Activity::Waiting,
             (Activity::Walking, _) => {
                 self.skill_done = number;
@@ -347,7 +347,9 @@ impl T1Control {
 
     fn write_joints(&self, measured_at: u64, joints: &mut Joints) {
         joints.measured_at = measured_at;
-        refill(&mut joints.positions, self.percept.positions);
+        // The stops of the server's joints give way by some hundredths under load.
+        let within = |(joint, angle): (usize, &f64)| anatomy::limits(joint).clamp(*angle);
+        refill(&mut joints.positions, self.percept.positions.iter().enumerate().map(within));
         refill(&mut joints.velocities, self.percept.velocities);
         // The server's motors have neither heat nor current.
         refill(&mut joints.temperatures, [0.0; JOINTS]);

@@ -81,7 +81,8 @@ impl PolicyWalk {
     /// # Errors
     /// The file cannot be read, does not have the size of the network, or holds what is no number.
     pub fn load(path: &Path) -> Result<PolicyWalk, Error> {
-        let named = |what: String| Error::configuration(format!("the walking policy {}: {what}", path.display()));
+        let named =
+            |what: String| Error::configuration(format!("the walking policy {}: {what}", path.display()));
         let bytes = std::fs::read(path).map_err(|error| named(error.to_string()))?;
         PolicyWalk::from_bytes(&bytes).map_err(named)
     }
@@ -187,12 +188,7 @@ fn elu(value: &mut f32) {
 
 impl WalkEngine for PolicyWalk {
     fn gait(&self) -> Gait {
-        Gait {
-            x: Limits::new(-0.8, 1.1),
-            y: Limits::symmetric(0.2),
-            turn: Limits::symmetric(1.2),
-            run: 1.1,
-        }
+        Gait { x: Limits::new(-0.8, 1.1), y: Limits::symmetric(0.2), turn: Limits::symmetric(1.2), run: 1.1 }
     }
 
     fn advance(&mut self, velocity: WalkVelocity, motion: &Motion, motors: &mut Motors) {
@@ -239,7 +235,11 @@ mod tests {
         let error = || PolicyWalk::load(&path).err().unwrap().to_string();
         assert!(error().contains("policy.f32") && error().contains("No such file"), "{}", error());
         std::fs::write(&path, [0; 12]).unwrap();
-        assert!(error().ends_with("it has 12 bytes, 834652 are the 208663 weights of the network"), "{}", error());
+        assert!(
+            error().ends_with("it has 12 bytes, 834652 are the 208663 weights of the network"),
+            "{}",
+            error()
+        );
         std::fs::write(&path, weights(&[(7, f32::NAN)])).unwrap();
         assert!(error().ends_with("weight 7 is no finite number"), "{}", error());
         std::fs::write(&path, weights(&[])).unwrap();
@@ -265,11 +265,11 @@ mod tests {
         let third = second + HIDDEN[0] * HIDDEN[1] + HIDDEN[1];
         let last = third + HIDDEN[1] * HIDDEN[2] + HIDDEN[2];
         let set = [
-            (3 * JOINTS + 3, 1.0),           // the first unit is the command ahead,
-            (normal, 0.1),                   // normalised and made smaller,
-            (second + 3 * HIDDEN[0], -1.0),  // which the fourth unit inverts,
+            (3 * JOINTS + 3, 1.0),            // the first unit is the command ahead,
+            (normal, 0.1),                    // normalised and made smaller,
+            (second + 3 * HIDDEN[0], -1.0),   // which the fourth unit inverts,
             (third + 5 * HIDDEN[1] + 3, 2.0), // the sixth doubles,
-            (last + 4 * HIDDEN[2] + 5, 1.0), // and the fifth joint follows.
+            (last + 4 * HIDDEN[2] + 5, 1.0),  // and the fifth joint follows.
         ];
         let mut walk = PolicyWalk::from_bytes(&weights(&set)).unwrap();
         let mut motors = [MotorCommand::default(); JOINTS];

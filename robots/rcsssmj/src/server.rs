@@ -12,7 +12,8 @@ use crate::monitor::Monitor;
 /// The program, as its package installs it.
 pub(crate) const PROGRAM: &str = "rcssservermj";
 /// How a missing program is installed.
-const INSTALL: &str = "install it with `pip install rcsssmj==0.2.1`, or name the program in the attribute `server`";
+const INSTALL: &str =
+    "install it with `pip install rcsssmj==0.2.1`, or name the program in the attribute `server`";
 /// How long the server may take to answer: Python and the physics are loaded first.
 const STARTING: Duration = Duration::from_secs(90);
 /// The pause between two attempts to connect.
@@ -37,7 +38,8 @@ impl Server {
     pub fn start(program: Option<&str>, lockstep: bool) -> Result<Server, Error> {
         let program = program.unwrap_or(PROGRAM);
         let [agents, monitors] = free_ports()?;
-        let failed = |what: std::io::Error| Error::configuration(format!("the server cannot be started: {what}"));
+        let failed =
+            |what: std::io::Error| Error::configuration(format!("the server cannot be started: {what}"));
         let folder = std::env::temp_dir().join(format!("monas-rcsssmj-{}-{agents}", std::process::id()));
         std::fs::create_dir_all(&folder).map_err(failed)?;
         let log = File::create(folder.join("output.log")).map_err(failed)?;
@@ -121,7 +123,8 @@ mod tests {
     fn a_missing_program_is_reported_with_the_command_that_installs_it() {
         let error = Server::start(Some("no-such-rcssservermj"), true).unwrap_err();
         assert_eq!(error.kind(), crate::ErrorKind::Configuration);
-        let expected = "there is no program `no-such-rcssservermj`: install it with `pip install rcsssmj==0.2.1`";
+        let expected =
+            "there is no program `no-such-rcssservermj`: install it with `pip install rcsssmj==0.2.1`";
         assert!(error.to_string().starts_with(expected), "{error}");
     }
 

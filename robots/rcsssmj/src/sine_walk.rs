@@ -42,6 +42,10 @@ pub struct SineParameters {
     pub turn: f64,
     /// Speed ahead at full stride, m/s.
     pub speed: f64,
+    /// Speed ahead of steps without a stride, m/s: the robot leans forwards.
+    pub drift: f64,
+    /// The slowest steps ahead, m/s: slower ones make the robot fall.
+    pub slowest: f64,
     /// Rate at full turn, rad/s.
     pub turn_rate: f64,
     /// Torque per angle and per angular velocity of the legs.
@@ -87,19 +91,25 @@ impl SineParameters {
             *number = in_range(value(name), least, most).map_err(|what| format!("`{name}` {what}"))?;
         }
         for (name, gains) in GAINS.into_iter().zip([&mut walk.leg_gains, &mut walk.other_gains]) {
-            let Some(DeValue::Array(pair)) = value(name) else { return Err(format!("`{name}` needs two numbers")) };
+            let Some(DeValue::Array(pair)) = value(name) else {
+                return Err(format!("`{name}` needs two numbers"));
+            };
             if pair.len() != gains.len() {
                 return Err(format!("`{name}` needs two numbers"));
             }
             for (gain, value) in gains.iter_mut().zip(pair.iter()) {
-                *gain = in_range(Some(value.get_ref()), 0.0, 1000.0).map_err(|what| format!("`{name}` {what}"))?;
+                *gain = in_range(Some(value.get_ref()), 0.0, 1000.0)
+                    .map_err(|what| format!("`{name}` {what}"))?;
             }
         }
-        Ok(walk)
+        match walk.speed > walk.drift {
+            true => Ok(walk),
+            false => Err("`speed` has to be more than `drift`".into()),
+        }
     }
 
     /// All single numbers with their names and ranges.
-    fn numbers(&mut self) -> [(&'static str, &mut f64, f64, f64); 14] {
+    fn numbers(&mut self) -> [(&'static str, &mut f64, f64, f64); 16] {
         [
             ("frequency", &mut self.frequency, 0.1, 10.0),
             ("crouch", &mut self.crouch, 0.0, 1.0),
@@ -114,6 +124,8 @@ impl SineParameters {
             ("gyro_roll", &mut self.gyro_roll, -1.0, 1.0),
             ("turn", &mut self.turn, 0.0, 1.0),
             ("speed", &mut self.speed, 0.01, 5.0),
+            ("drift", &mut self.drift, 0.0, 5.0),
+            ("slowest", &mut self.slowest, 0.0, 5.0),
             ("turn_rate", &mut self.turn_rate, 0.01, 5.0),
         ]
     }
@@ -136,8 +148,8 @@ fn in_range(value: Option<&DeValue<'_>>, least: f64, most: f64) -> Result<f64, S
 }
 
 /// A walk in which each joint of the legs follows a sine of one clock. The gyroscope moves the
-/// ankles; there is no other feedback of balance. It turns by the yaw of the hips and does not walk
-/// to a side.
+/// ankles; there is no other feedback of balance. It turns by the yaw of the hips and walks neither
+/// to a side nor backwards.
 #[derive(Clone, Debug)]
 pub struct SineWalk {
     parameters: SineParameters,
@@ -153,22 +165,22 @@ pub struct SineWalk {
 /// The times in which the robot goes into its crouch and begins or ends its steps, s.
 const CROUCHING: f64 = 0.4;
 const STARTING: f64 = 0.6;
-/// How long the robot steps on the spot before it stands, s.
-const LINGER: f64 = 1.0;
+/// How long the robot takes slow steps before it stands, s: it has to lose its speed.
+const SLOWING: f64 = 1.2;
 /// Roll of the shoulders beside the body, rad: the arms hang.
 const ARMS: f64 = 1.35;
 
 impl SineWalk {
     /// A walk with parameters, for a robot that stands.
     pub fn new(parameters: SineParameters) -> SineWalk {
-        SineWalk { parameters, clock: 0.0, crouched: 0.0, stepping: 0.0, still: LINGER }
+        SineWalk { parameters, clock: 0.0, crouched: 0.0, stepping: 0.0, still: SLOWING }
     }
 
     fn step(&mut self, velocity: WalkVelocity) {
+        self.crouched = (self.crouched + CYCLE_SECONDS / CROUCHING).min(1.0);
         let moves = velocity != WalkVelocity::default();
         self.still = if moves { 0.0 } else { self.still + CYCLE_SECONDS };
-        self.crouched = (self.crouched + CYCLE_SECONDS / CROUCHING).min(1.0);
-        let steps = self.crouched >= 1.0 && self.still < LINGER;
+        let steps = self.crouched >= 1.0 && self.still < SLOWING;
         let change = CYCLE_SECONDS / STARTING;
         self.stepping = (self.stepping + if steps { change } else { -change }).clamp(0.0, 1.0);
         self.clock = match self.stepping > 0.0 {
@@ -184,7 +196,9 @@ impl SineWalk {
         (angles[LEFT_SHOULDER_ROLL], angles[RIGHT_SHOULDER_ROLL]) = (-arms, arms);
         let lift = libm::sin(self.clock);
         let swing = libm::cos(self.clock + walk.phase) * self.stepping;
-        let stride = walk.stride * velocity.x / walk.speed;
+        // Steps on the spot are safe in a turn only; the last ones before a stand go ahead.
+        let ahead = if velocity.x > 0.0 || velocity.turn == 0.0 { velocity.x.max(walk.slowest) } else { 0.0 };
+        let stride = walk.stride * (ahead - walk.drift) / (walk.speed - walk.drift);
         let yaw = walk.turn * velocity.turn / walk.turn_rate;
         let crouch = walk.crouch * self.crouched;
         for (leg, side) in [(LEFT_LEG, 1.0), (RIGHT_LEG, -1.0)] {
@@ -206,7 +220,7 @@ impl WalkEngine for SineWalk {
     fn gait(&self) -> Gait {
         let SineParameters { speed, turn_rate, .. } = self.parameters;
         Gait {
-            x: Limits::new(-speed / 2.0, speed),
+            x: Limits::new(0.0, speed),
             y: Limits::symmetric(0.0),
             turn: Limits::symmetric(turn_rate),
             run: speed,
@@ -283,6 +297,9 @@ mod tests {
         assert_eq!(error(format!("{OWN}\nhop = 1")), "there is no parameter `hop`");
         assert_eq!(error(OWN.replace("lift = ", "lift = 7 #")), "`lift` is 7, expected 0 to 1");
         assert_eq!(error(OWN.replace("[200.0, 5.0]", "[200.0]")), "`leg_gains` needs two numbers");
-        assert_eq!(error(OWN.replace("[200.0, 5.0]", "[200.0, \"x\"]")), "`leg_gains` is no number but a string");
+        assert_eq!(
+            error(OWN.replace("[200.0, 5.0]", "[200.0, \"x\"]")),
+            "`leg_gains` is no number but a string"
+        );
     }
 }
