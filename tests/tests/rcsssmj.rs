@@ -52,8 +52,7 @@ impl Run {
         let text = std::fs::read_to_string(CONFIGURATION).unwrap();
         let text = text.replace("<body ", &format!("<body policy=\"{}\" ", policy.display()));
         let source = Arc::new(Source::new("rcsssmj.xml", text));
-        let (setup, diagnostics) =
-            monas_config::read(&source, Path::new(CONFIGURATION), &Registry::linked());
+        let (setup, diagnostics) = monas_config::read(&source, Path::new(CONFIGURATION), &Registry::linked());
         assert!(diagnostics.is_empty(), "{diagnostics:#?}");
         let talws = Talws::new().setup(setup);
         assert!(talws.has_own_time());

@@ -128,25 +128,30 @@ fn chart_settings() -> [AttributeRule; 9] {
 
 fn body() -> ElementRule {
     let doc = "the body of the robot; in a match that of the field by default; other attributes are options of its kind";
-    ElementRule::new("body", doc).attributes([
-        attribute("kind", Kind::Name, "its kind; `monas doctor` lists those of the program").or("field"),
-        attribute("address", Kind::Text, "where its interface answers; by default the usual one of the kind"),
-        attribute("delay", Kind::Duration { least: Duration::ZERO }, "delay of commands, for trials")
-            .or("0s"),
-        attribute(
-            "noise",
-            Kind::number_in(0.0, 1.0),
-            "standard deviation of what is added to measured angles and bearings, rad, for trials",
-        )
-        .or("0"),
-        attribute(
-            "loss",
-            Kind::number_in(0.0, 1.0),
-            "probability with which sightings and radio messages are lost, for trials",
-        )
-        .or("0"),
-    ])
-    .with_parameters()
+    ElementRule::new("body", doc)
+        .attributes([
+            attribute("kind", Kind::Name, "its kind; `monas doctor` lists those of the program").or("field"),
+            attribute(
+                "address",
+                Kind::Text,
+                "where its interface answers; by default the usual one of the kind",
+            ),
+            attribute("delay", Kind::Duration { least: Duration::ZERO }, "delay of commands, for trials")
+                .or("0s"),
+            attribute(
+                "noise",
+                Kind::number_in(0.0, 1.0),
+                "standard deviation of what is added to measured angles and bearings, rad, for trials",
+            )
+            .or("0"),
+            attribute(
+                "loss",
+                Kind::number_in(0.0, 1.0),
+                "probability with which sightings and radio messages are lost, for trials",
+            )
+            .or("0"),
+        ])
+        .with_parameters()
 }
 
 fn agent() -> ElementRule {

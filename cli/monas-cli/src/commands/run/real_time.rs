@@ -94,7 +94,11 @@ fn talws(
     Ok(Talws::new().setup(setup))
 }
 
-pub(super) fn write(out: &mut dyn Write, format: Format, agents: &[AgentStatistics]) -> Result<(), CommandFailure> {
+pub(super) fn write(
+    out: &mut dyn Write,
+    format: Format,
+    agents: &[AgentStatistics],
+) -> Result<(), CommandFailure> {
     if format == Format::Json {
         agents.iter().try_for_each(|agent| writeln!(out, "{}", object(agent)))?;
         return Ok(());
