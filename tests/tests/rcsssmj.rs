@@ -1,8 +1,7 @@
 //! An attacker on the RoboCup MuJoCo soccer server, if the program `rcssservermj` is there.
 //!
-//! The attacker walks by the policy whose weights `MONAS_T1_POLICY` names. How often it scores:
-//! `MONAS_T1_POLICY=t1.f32 MONAS_T1_RUNS=10 cargo test -p monas-tests --test rcsssmj -- --nocapture`
-//! prints each run.
+//! The attacker walks by the policy whose weights `MONAS_T1_POLICY` names. How often it scores is
+//! counted with `MONAS_T1_RUNS=10 cargo test -p monas-tests --test rcsssmj -- --nocapture`.
 
 #![allow(clippy::unwrap_used)] // tests may panic
 

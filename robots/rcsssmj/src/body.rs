@@ -150,13 +150,12 @@ impl T1 {
         Err(Error::protocol("the server gives no kick-off"))
     }
 
-    #[allow(clippy::disallowed_methods)] // waits for another process; the agents' time stands still
     /// Sends a command to the monitor, so that it is taken up before the next cycle.
     fn instruct(&mut self, command: impl FnOnce(&mut Monitor) -> Result<(), Error>) -> Result<(), Error> {
         if let Some(monitor) = &mut self.monitor {
             command(monitor)?;
             if self.lockstep {
-                std::thread::sleep(TAKING_UP);
+                crate::connection::pause(TAKING_UP);
             }
         }
         Ok(())

@@ -2,6 +2,7 @@
 
 use std::io::{ErrorKind, Read, Write};
 use std::net::{TcpStream, ToSocketAddrs};
+use std::sync::{Condvar, Mutex, PoisonError};
 use std::time::Duration;
 
 use crate::error::Error;
@@ -107,6 +108,14 @@ impl Connection {
         }
         Ok(())
     }
+}
+
+/// Gives another process time, while that of the agents stands still.
+pub(crate) fn pause(time: Duration) {
+    let nothing = (Mutex::new(()), Condvar::new());
+    let guard = nothing.0.lock().unwrap_or_else(PoisonError::into_inner);
+    // Nothing is awaited but the time.
+    let _ = nothing.1.wait_timeout_while(guard, time, |()| true);
 }
 
 fn ended(why: &str) -> Error {

@@ -7,7 +7,7 @@ use crate::error::Error;
 use crate::expression::{Item, Items};
 use crate::percept::{PlayMode, Side};
 
-/// What a monitor was told of the game.
+/// The state of the game as a monitor receives it.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub struct MonitoredGame {
     /// The time of the server, s.
@@ -63,7 +63,7 @@ impl MonitoredGame {
 
 /// A connection to the port for monitors.
 ///
-/// The server sends the scene in every second cycle and does not stop when nobody reads:
+/// The server sends the scene in every second cycle and does not stop for a monitor that does not read:
 /// [`drain`](Monitor::drain) has to be called again and again.
 #[derive(Debug)]
 pub struct Monitor {

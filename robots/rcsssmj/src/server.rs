@@ -93,7 +93,7 @@ impl Server {
                 let last = log.lines().rev().find(|line| !line.trim().is_empty()).unwrap_or("no output");
                 return Err(Error::configuration(format!("the server has ended, {status}: {last}")));
             }
-            std::thread::sleep(RETRY);
+            crate::connection::pause(RETRY);
         }
     }
 }
@@ -107,7 +107,7 @@ impl Drop for Server {
     }
 }
 
-/// Two ports that nobody uses at present.
+/// Two ports that are free at present.
 fn free_ports() -> Result<[u16; 2], Error> {
     let failed = |error: std::io::Error| Error::configuration(format!("no free port: {error}"));
     let listen = || TcpListener::bind("127.0.0.1:0").map_err(failed);

@@ -268,7 +268,7 @@ mod tests {
     }
 
     #[test]
-    fn it_crouches_without_a_jump_and_stands_until_it_is_told_to_walk() {
+    fn it_crouches_without_a_jump_and_stands_until_a_command_to_walk() {
         let mut walk = SineWalk::new(SineParameters::own().unwrap());
         let angles = run(&mut walk, WalkVelocity::default(), 100);
         let knees = |angles: &JointValues| (angles[LEFT_LEG + 3], angles[RIGHT_LEG + 3]);

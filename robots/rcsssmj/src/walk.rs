@@ -17,7 +17,7 @@ pub struct WalkVelocity {
     pub turn: f64,
 }
 
-/// What a walk engine knows of the robot.
+/// The state of the robot that a walk engine uses.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Motion {
     /// Angles of the joints, rad.

@@ -11,8 +11,8 @@ use crate::topics;
 /// a foot. It never kicks.
 ///
 /// Parameters `kick_x`, `kick_y` (m): best position of the ball for a kick; `turn_x` (m): distance
-/// ahead at which the ball is kept while the robot turns round it; `tolerance` (rad): accepted error
-/// of the heading.
+/// ahead at which the ball is kept while the robot turns round it; `tolerance` (rad): accepted
+/// error of the heading.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct AlignWithBall {
     alignment: Alignment,

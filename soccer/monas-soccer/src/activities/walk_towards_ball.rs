@@ -12,8 +12,8 @@ use crate::topics;
 /// Walks behind the ball, so that it lies between the robot and the opponents' goal, avoiding other
 /// robots and the own goal area.
 ///
-/// Parameters (m), which depend on the size of the robot: `stand_off`, the distance from the ball at
-/// which the path ends; `circle`, the radius of the circle on which the robot walks round the ball;
+/// Parameters (m), which depend on the size of the robot: `stand_off`, the distance from the ball
+/// at which the path ends; `circle`, the radius of the circle on which the robot walks round the ball;
 /// `face_target`, the distance from the end at which it faces the target.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct WalkTowardsBall {
