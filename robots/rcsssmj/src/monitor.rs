@@ -63,8 +63,8 @@ impl MonitoredGame {
 
 /// A connection to the port for monitors.
 ///
-/// The server sends the scene in every second cycle and does not stop for a monitor that does not read:
-/// [`drain`](Monitor::drain) has to be called again and again.
+/// The server sends the scene in every second cycle and does not stop for a monitor that does not
+/// read: [`drain`](Monitor::drain) has to be called again and again.
 #[derive(Debug)]
 pub struct Monitor {
     connection: Connection,

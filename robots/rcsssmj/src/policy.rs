@@ -4,8 +4,8 @@
 //! which commands velocities: 78 inputs, hidden layers of 512 (with layer normalisation), 256 and
 //! 128 units with ELU, and an angle for each of the 23 joints. Its weights are no part of this
 //! project. The file holds them as 32 bit numbers, the lowest byte first: of each layer the
-//! weights, one row for each output, then the biases; after the biases of the first layer the gains and the
-//! biases of its normalisation.
+//! weights, one row for each output, then the biases; after the biases of the first layer the gains
+//! and the biases of its normalisation.
 
 use std::path::Path;
 

@@ -13,8 +13,8 @@ use crate::topics;
 /// robots and the own goal area.
 ///
 /// Parameters (m), which depend on the size of the robot: `stand_off`, the distance from the ball
-/// at which the path ends; `circle`, the radius of the circle on which the robot walks round the ball;
-/// `face_target`, the distance from the end at which it faces the target.
+/// at which the path ends; `circle`, the radius of the circle on which the robot walks round the
+/// ball; `face_target`, the distance from the end at which it faces the target.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct WalkTowardsBall {
     approach: Approach,
