@@ -1,5 +1,6 @@
 //! Kinds of bodies that configurations can name.
 
+use std::collections::BTreeMap;
 use std::fmt;
 
 use crate::{Disturbances, Error, ErrorKind, Robot, WrappedBody};
@@ -11,6 +12,13 @@ pub struct BodyKind {
     pub name: &'static str,
     /// What it is, in one line.
     pub summary: &'static str,
+    /// What a configuration can say of it beside its address: further attributes of `body`.
+    pub options: &'static [BodyOption],
+    /// Whether a body with these settings has a time of its own: each call of
+    /// [`sense`](Robot::sense) then makes one cycle of a simulation elsewhere and waits for it, and
+    /// the run is one in simulated time. Other bodies are in real time, or in the time of the
+    /// simulated world around them.
+    pub has_own_time: fn(&BodySettings) -> bool,
     /// Opens a body of this kind.
     pub open: OpenBody,
     /// Offers a body of a simulated world at an address through the interface of this kind, for
@@ -23,11 +31,39 @@ pub struct BodyKind {
 /// Opens a body at a site.
 pub type OpenBody = fn(BodySite) -> Result<Box<dyn Robot>, Error>;
 
+/// An option of a kind of body.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct BodyOption {
+    /// The attribute that configurations use.
+    pub name: &'static str,
+    /// What its values are.
+    pub kind: OptionKind,
+    /// What it means, with its default.
+    pub doc: &'static str,
+}
+
+/// The values of an option.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum OptionKind {
+    /// Any text.
+    Text,
+    /// Letters, digits, `-` and `_`.
+    Name,
+    /// A number.
+    Number,
+    /// `0` or `1`.
+    Flag,
+    /// A file, which a configuration names relative to its own place.
+    File,
+}
+
 /// Where a body is opened.
 #[derive(Default)]
 pub struct BodySite {
     /// The address that the configuration names; by default the usual one of the kind.
     pub address: Option<String>,
+    /// The options that the configuration gives.
+    pub options: BTreeMap<String, String>,
     /// The body of the simulated world that the robot stands in, in simulated time; none on a
     /// robot.
     pub simulated: Option<Box<dyn Robot>>,
@@ -40,6 +76,8 @@ pub struct BodySettings {
     pub kind: String,
     /// Where its interface answers; by default where the kind expects it.
     pub address: Option<String>,
+    /// The options of its kind that are given.
+    pub options: BTreeMap<String, String>,
     /// What lies between the body and the software.
     pub disturbances: Disturbances,
 }
@@ -48,7 +86,8 @@ impl Default for BodySettings {
     /// The simulated world's own body, without disturbances.
     fn default() -> BodySettings {
         let disturbances = Disturbances::default();
-        BodySettings { kind: BodyKind::DEFAULT.to_owned(), address: None, disturbances }
+        let (kind, options) = (BodyKind::DEFAULT.to_owned(), BTreeMap::new());
+        BodySettings { kind, address: None, options, disturbances }
     }
 }
 
@@ -68,7 +107,13 @@ impl BodySettings {
             );
             Error::new(ErrorKind::Configuration, message)
         })?;
-        serve(BodySite { address: Some(address), simulated: Some(simulated) })
+        let options = self.options.clone();
+        serve(BodySite { address: Some(address), options, simulated: Some(simulated) })
+    }
+
+    /// Whether the body has a time of its own, see [`BodyKind::has_own_time`].
+    pub fn has_own_time(&self) -> bool {
+        BodyKind::named(&self.kind).is_ok_and(|kind| (kind.has_own_time)(self))
     }
 
     /// Opens the body, with the simulated world's body if there is one. The seed determines the
@@ -78,7 +123,8 @@ impl BodySettings {
     /// There is no such kind, or the body does not answer.
     pub fn open(&self, simulated: Option<Box<dyn Robot>>, seed: u64) -> Result<Box<dyn Robot>, Error> {
         let kind = BodyKind::named(&self.kind)?;
-        let body = (kind.open)(BodySite { address: self.address.clone(), simulated })?;
+        let (address, options) = (self.address.clone(), self.options.clone());
+        let body = (kind.open)(BodySite { address, options, simulated })?;
         Ok(match self.disturbances == Disturbances::default() {
             true => body,
             false => Box::new(WrappedBody::new(body, self.disturbances, seed)),

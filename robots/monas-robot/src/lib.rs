@@ -51,7 +51,7 @@ mod wrapped_body;
 narukom::include_messages!("monas.robot");
 
 pub use anatomy::{Anatomy, Camera, Joint, Limits};
-pub use body_kind::{BodyKind, BodySettings, BodySite, OpenBody};
+pub use body_kind::{BodyKind, BodyOption, BodySettings, BodySite, OpenBody, OptionKind};
 pub use joint_targets::JointTargets;
 pub use robot::{Error, ErrorKind, Percepts, Robot};
 pub use wrapped_body::{Disturbances, WrappedBody};

@@ -44,6 +44,8 @@ impl Percepts {
 /// order, once per cycle of the body.
 ///
 /// Neither call blocks: a body behind a connection uses its own thread and returns the newest data.
+/// Only a body with a time of its own ([`BodyKind::has_own_time`](crate::BodyKind)) waits in
+/// `sense` for the simulation that makes a cycle.
 pub trait Robot: Send {
     /// The properties and capabilities of the body.
     fn anatomy(&self) -> &Anatomy;

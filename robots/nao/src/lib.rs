@@ -58,6 +58,8 @@ pub use walk::{SteppingWalk, WalkEngine, WalkVelocity};
 monas_robot::body_kind!(BodyKind {
     name: "nao",
     summary: "a Nao V6 through LoLA; in simulated time through a LoLA server over the field's body",
+    options: &[],
+    has_own_time: |_| false,
     open,
     serve: Some(serve),
     probe,
@@ -66,7 +68,7 @@ monas_robot::body_kind!(BodyKind {
 /// Opens a Nao: in a simulated world over its body there, else at a socket.
 fn open(site: BodySite) -> Result<Box<dyn Robot>, monas_robot::Error> {
     match site {
-        BodySite { simulated: Some(body), address: None } => Ok(Box::new(SimulatedNao::new(body)?)),
+        BodySite { simulated: Some(body), address: None, .. } => Ok(Box::new(SimulatedNao::new(body)?)),
         BodySite { address, .. } => {
             let path = address.as_deref().unwrap_or(lola::SOCKET);
             Ok(Box::new(Nao::open(Path::new(path))?))

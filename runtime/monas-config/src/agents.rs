@@ -4,17 +4,19 @@ mod charts;
 mod monitors;
 mod publishers;
 
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 
-use monas_robot::{BodyKind, BodySettings, Disturbances};
+use monas_robot::{BodyKind, BodyOption, BodySettings, Disturbances, OptionKind};
 use yase::{Diagnostic, Source};
 
-use super::element::Element;
-use super::grammar::Grammar;
+use super::element::{Attribute, Element};
+use super::grammar::{self, Grammar, Kind};
 use super::layers::Layers;
 use super::links::LinkReader;
 use super::modules;
+use super::paths;
 use super::resolve::{resolve, sort};
 use super::values::Values;
 use monas_core::activity::Activity;
@@ -145,8 +147,10 @@ impl AgentReader<'_> {
             };
             self.diagnostics.push(found.with_hint("link the crate of the body: `use its_name as _;`"));
         }
+        let options = self.body_options(&kind, &values);
         BodySettings {
             kind,
+            options,
             address: values.text("address").map(str::to_owned),
             disturbances: Disturbances {
                 delay: values.duration("delay").unwrap_or_default(),
@@ -154,6 +158,63 @@ impl AgentReader<'_> {
                 loss: values.number("loss").unwrap_or_default(),
             },
         }
+    }
+
+    /// The options that the kind of the body has; files are found as everywhere in a configuration.
+    fn body_options(&mut self, kind: &str, values: &Values<'_>) -> BTreeMap<String, String> {
+        // That there is no such kind has been said.
+        let Ok(kind) = BodyKind::named(kind) else { return BTreeMap::new() };
+        let mut options = BTreeMap::new();
+        for given in values.parameters() {
+            let Some(option) = kind.options.iter().find(|option| option.name == given.name) else {
+                let message = format!("a body of kind `{}` has no option `{}`", kind.name, given.name);
+                let known = kind.options.iter().map(|option| option.name);
+                let diagnostic = given.name_error("E0304", message).with_nearest(&given.name, known.clone());
+                let names = known.map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
+                self.diagnostics.push(match (&diagnostic.hint, names.is_empty()) {
+                    (Some(_), _) => diagnostic,
+                    (None, true) => diagnostic.with_hint("its kind has no options"),
+                    (None, false) => diagnostic.with_hint(format!("its options are {names}")),
+                });
+                continue;
+            };
+            if let Some(value) = self.option_value(option, given) {
+                options.insert(option.name.to_owned(), value);
+            }
+        }
+        options
+    }
+
+    /// The value of an option, which has to be of its kind; none, with a diagnostic, otherwise.
+    fn option_value(&mut self, option: &BodyOption, given: &Attribute) -> Option<String> {
+        let value = given.value.trim();
+        let expected = match option.kind {
+            OptionKind::Text => return Some(value.to_owned()),
+            OptionKind::Name if Kind::Name.allows(value) => return Some(value.to_owned()),
+            OptionKind::Number if value.parse().is_ok_and(f64::is_finite) => return Some(value.to_owned()),
+            OptionKind::Flag if grammar::flag(value).is_some() => {
+                return Some(if grammar::flag(value) == Some(true) { "1" } else { "0" }.to_owned());
+            }
+            OptionKind::File => {
+                return match paths::locate(self.path, value) {
+                    Ok(found) => Some(found.to_string_lossy().into_owned()),
+                    Err(near) => {
+                        let diagnostic = given.error("E0316", format!("no file `{value}`"));
+                        self.diagnostics.push(match near {
+                            Some(near) => diagnostic.with_hint(format!("did you mean `{near}`?")),
+                            None => diagnostic.with_hint(option.doc),
+                        });
+                        None
+                    }
+                };
+            }
+            OptionKind::Name => "a name",
+            OptionKind::Number => "a number",
+            OptionKind::Flag => "`0` or `1`",
+        };
+        let message = format!("`{}` is `{value}`, expected {expected}", option.name);
+        self.diagnostics.push(given.error("E0306", message).with_hint(option.doc));
+        None
     }
 
     fn agents(&mut self, elements: &[Element]) {

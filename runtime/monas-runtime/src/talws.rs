@@ -88,6 +88,12 @@ impl Talws {
         self
     }
 
+    /// Whether the body that a configuration names has a time of its own: the run is then one in
+    /// [simulated time](Talws::simulate), each cycle of which waits for the body.
+    pub fn has_own_time(&self) -> bool {
+        self.body.as_ref().is_some_and(BodySettings::has_own_time)
+    }
+
     /// Takes activities and functions from this registry instead of the linked ones.
     pub fn registry(mut self, registry: Registry) -> Talws {
         self.config.registry = Some(registry);

@@ -22,6 +22,8 @@ pub use body::FieldBody;
 monas_robot::body_kind!(BodyKind {
     name: BodyKind::DEFAULT,
     summary: "the simulated world's own body: a disk on the embedded field",
+    options: &[],
+    has_own_time: |_| false,
     open: |site: BodySite| site.simulated.ok_or_else(nowhere),
     serve: None,
     probe: |_| Ok("it answers in matches".to_owned()),

@@ -1,4 +1,5 @@
-//! `monas run`: runs a match in simulated time, or a set of agents in real time.
+//! `monas run`: runs a match in simulated time, or a set of agents in real time; agents with a body
+//! that has its own time in the time of that body.
 
 mod bodies;
 mod control;
@@ -9,8 +10,8 @@ mod field_view;
 #[cfg(feature = "soccer")]
 pub(crate) mod league;
 mod links;
+mod lockstep;
 mod outputs;
-#[cfg(feature = "soccer")]
 mod pacer;
 #[cfg(feature = "soccer")]
 mod play;
@@ -132,11 +133,6 @@ pub(crate) fn execute(
     if arguments.listen.is_given() && !arguments.studio {
         return Err(CommandFailure::Usage(
             "--listen, --allow-origin and --allow-control are for the studio: add --studio".into(),
-        ));
-    }
-    if kind == ConfigurationKind::Agents && arguments.pace.is_some() {
-        return Err(CommandFailure::Usage(
-            "--pace is for simulated time; these agents run in real time".into(),
         ));
     }
     #[cfg(feature = "soccer")]

@@ -4,6 +4,7 @@ use monas_link::PublishAs;
 use narukom::Hub;
 use yase::Statechart;
 use yase::diagnostic::nearest;
+use yase::statechart::ConstantValue;
 
 use super::super::element::{Attribute, Element};
 use super::super::model;
@@ -24,7 +25,10 @@ impl AgentReader<'_> {
         let values = Values::of(element, self.grammar);
         let (enabled, elsewhere) = (is_enabled(&values), values.given("elsewhere").cloned());
         let agent = match self.registry.chart(element.text()) {
-            Some(Ok(generated)) if enabled => agent.generated_as(element.text(), generated),
+            Some(Ok(generated)) if enabled => {
+                self.refuse_constants(element);
+                agent.generated_as(element.text(), generated)
+            }
             Some(Ok(_)) => return agent,
             Some(Err(error)) => return self.unusable(element, &error, agent),
             None => match self.chart(element).filter(|_| enabled) {
@@ -164,6 +168,40 @@ impl AgentReader<'_> {
         })
     }
 
+    /// Gives constants of a model the values of the configuration.
+    fn set_constants(&mut self, element: &Element, chart: &mut Statechart) {
+        for given in element.children_named("constant") {
+            let values = Values::of(given, self.grammar);
+            let (Some(name), text) = (values.text("name"), given.text()) else { continue };
+            let known = chart.constants.iter().map(|constant| constant.name.as_str());
+            let Some(place) = known.clone().position(|known| known == name) else {
+                let message = format!("the chart `{}` has no constant `{name}`", chart.name);
+                let diagnostic = given.error("E0344", given.name_span(), message);
+                self.diagnostics.push(diagnostic.with_nearest(name, known));
+                continue;
+            };
+            match aseme::srm::constant_value(text) {
+                Some(value) if same_kind(&value, &chart.constants[place].value) => {
+                    chart.constants[place].value = value;
+                }
+                _ => {
+                    let message = format!("`{text}` is no value for the constant `{name}`");
+                    let hint = format!("the model gives it {}", kind(&chart.constants[place].value));
+                    self.diagnostics.push(given.error("E0344", given.text_span(), message).with_hint(hint));
+                }
+            }
+        }
+    }
+
+    /// Constants are compiled into generated charts.
+    fn refuse_constants(&mut self, element: &Element) {
+        for given in element.children_named("constant") {
+            let message = format!("the constants of the generated chart `{}` are compiled", element.text());
+            let hint = "name the model file instead, or change the model and generate the chart again";
+            self.diagnostics.push(given.error("E0344", given.name_span(), message).with_hint(hint));
+        }
+    }
+
     /// The model named by a statechart, and its compiled form; none, with diagnostics, on errors.
     fn chart(&mut self, element: &Element) -> Option<(Statechart, Option<CompiledModel>)> {
         let found = match paths::locate(self.path, element.text()) {
@@ -187,13 +225,26 @@ impl AgentReader<'_> {
         // A chart with faulty formulas is incomplete, so further diagnostics would mislead.
         let is_known = !aseme::have_formula_errors(&diagnostics);
         self.diagnostics.extend(diagnostics);
-        let (chart, source) = chart.filter(|_| is_known)?;
+        let (mut chart, source) = chart.filter(|_| is_known)?;
+        self.set_constants(element, &mut chart);
         let compiled = match Binder::new(&self.registry) {
             Ok(binder) => binder.compile(&chart, &source),
             Err(error) => Err(vec![element.error("E0318", element.text_span(), error.to_string())]),
         };
         let compiled = compiled.map_err(|diagnostics| self.diagnostics.extend(diagnostics)).ok();
         Some((chart, compiled))
+    }
+}
+
+fn same_kind(one: &ConstantValue, other: &ConstantValue) -> bool {
+    kind(one) == kind(other)
+}
+
+fn kind(value: &ConstantValue) -> &'static str {
+    match value {
+        ConstantValue::Bool(_) => "true or false",
+        ConstantValue::Number(_) => "a number, which a unit may follow",
+        ConstantValue::Text(_) => "a text in quotes",
     }
 }
 

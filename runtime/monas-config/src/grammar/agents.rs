@@ -28,6 +28,7 @@ impl Grammar {
             .with(ElementRule::new("name", "the name of the agent").text("name", Kind::Text))
             .with(activity())
             .with(statechart())
+            .with(constant())
             .with(monitor())
             .with(send())
             .with(receive())
@@ -126,24 +127,31 @@ fn chart_settings() -> [AttributeRule; 9] {
 }
 
 fn body() -> ElementRule {
-    ElementRule::new("body", "the body of the robot; in a match that of the field by default").attributes([
-        attribute("kind", Kind::Name, "its kind; `monas doctor` lists those of the program").or("field"),
-        attribute("address", Kind::Text, "where its interface answers; by default the usual one of the kind"),
-        attribute("delay", Kind::Duration { least: Duration::ZERO }, "delay of commands, for trials")
-            .or("0s"),
-        attribute(
-            "noise",
-            Kind::number_in(0.0, 1.0),
-            "standard deviation of what is added to measured angles and bearings, rad, for trials",
-        )
-        .or("0"),
-        attribute(
-            "loss",
-            Kind::number_in(0.0, 1.0),
-            "probability with which sightings and radio messages are lost, for trials",
-        )
-        .or("0"),
-    ])
+    let doc = "the body of the robot; in a match that of the field by default; other attributes are options of its kind";
+    ElementRule::new("body", doc)
+        .attributes([
+            attribute("kind", Kind::Name, "its kind; `monas doctor` lists those of the program").or("field"),
+            attribute(
+                "address",
+                Kind::Text,
+                "where its interface answers; by default the usual one of the kind",
+            ),
+            attribute("delay", Kind::Duration { least: Duration::ZERO }, "delay of commands, for trials")
+                .or("0s"),
+            attribute(
+                "noise",
+                Kind::number_in(0.0, 1.0),
+                "standard deviation of what is added to measured angles and bearings, rad, for trials",
+            )
+            .or("0"),
+            attribute(
+                "loss",
+                Kind::number_in(0.0, 1.0),
+                "probability with which sightings and radio messages are lost, for trials",
+            )
+            .or("0"),
+        ])
+        .with_parameters()
 }
 
 fn agent() -> ElementRule {
@@ -187,8 +195,17 @@ fn statechart() -> ElementRule {
         .attributes(chart_settings())
         .text("model", Kind::Text)
         .children("activity")
+        .children("constant")
         .children("monitor")
         .identified_by(Identity::Text)
+}
+
+fn constant() -> ElementRule {
+    let doc = "a value for a constant of the model, in place of the one that the model gives";
+    ElementRule::new("constant", doc)
+        .attribute(attribute("name", Kind::Name, "the name of the constant").required())
+        .text("value", Kind::Text)
+        .identified_by(Identity::Attribute("name"))
 }
 
 fn monitor() -> ElementRule {

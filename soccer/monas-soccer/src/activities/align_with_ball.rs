@@ -10,8 +10,9 @@ use crate::topics;
 /// Turns round the ball until the robot faces the target, then moves until the ball is in front of
 /// a foot. It never kicks.
 ///
-/// Parameters `kick_x`, `kick_y` (m): best position of the ball for a kick; `tolerance` (rad):
-/// accepted error of the heading.
+/// Parameters `kick_x`, `kick_y` (m): best position of the ball for a kick; `turn_x` (m): distance
+/// ahead at which the ball is kept while the robot turns round it; `tolerance` (rad): accepted
+/// error of the heading.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct AlignWithBall {
     alignment: Alignment,
@@ -22,6 +23,7 @@ impl Activity for AlignWithBall {
         let alignment = &mut self.alignment;
         alignment.kick_x = parameters.number("kick_x").unwrap_or(alignment.kick_x);
         alignment.kick_y = parameters.number("kick_y").unwrap_or(alignment.kick_y);
+        alignment.turn_x = parameters.number("turn_x").unwrap_or(alignment.turn_x);
         alignment.tolerance = parameters.number("tolerance").unwrap_or(alignment.tolerance);
     }
 

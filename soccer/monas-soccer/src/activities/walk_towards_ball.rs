@@ -1,6 +1,6 @@
 //! Walks to the ball.
 
-use monas::{Activity, Blackboard, BoxError, Progress, Topics};
+use monas::{Activity, Blackboard, BoxError, Parameters, Progress, Topics};
 use nalgebra::Point2;
 
 use super::motion_requests::request_walk;
@@ -11,12 +11,27 @@ use crate::topics;
 
 /// Walks behind the ball, so that it lies between the robot and the opponents' goal, avoiding other
 /// robots and the own goal area.
+///
+/// Parameters (m), which depend on the size of the robot: `stand_off`, the distance from the ball
+/// at which the path ends; `circle`, the radius of the circle on which the robot walks round the
+/// ball; `face_target`, the distance from the end at which it faces the target.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct WalkTowardsBall {
     approach: Approach,
 }
 
 impl Activity for WalkTowardsBall {
+    fn configure(&mut self, parameters: &Parameters) {
+        let length = |key, length: &mut f64| {
+            let positive =
+                |text: &str| text.parse().ok().filter(|value: &f64| value.is_finite() && *value > 0.0);
+            *length = parameters.read(key, "a length above 0", positive).unwrap_or(*length);
+        };
+        length("stand_off", &mut self.approach.stand_off);
+        length("circle", &mut self.approach.circle);
+        length("face_target", &mut self.approach.face_target);
+    }
+
     fn execute(&mut self, blackboard: &mut Blackboard) -> Result<Progress, BoxError> {
         let Some(ball) = blackboard.read(topics::BALL).copied() else { return Ok(Progress::Done) };
         let obstacles: Vec<Point2<f64>> = others(blackboard).map(|robot| robot.position()).collect();
@@ -68,6 +83,18 @@ mod tests {
 
     fn robot(x: f64, y: f64, team_mate: bool) -> OtherRobot {
         OtherRobot { x, y, team_mate, age: 0.0 }
+    }
+
+    #[test]
+    fn a_larger_robot_stops_farther_from_the_ball() {
+        let mut large = WalkTowardsBall::default();
+        large.configure(&Parameters::new().with("stand_off", "0.8").with("circle", "1.0"));
+        let near_ball = (0.8, 0.0);
+        let mut stage = ActivityFixture::new();
+        stage.publish(topics::BALL, Ball { x: near_ball.0, distance: 0.8, ..Ball::default() });
+        assert!(stage.run(&mut large));
+        assert!(stage.latest(topics::MOTION).unwrap().vx < 0.01);
+        assert!(run(near_ball, None, &[]).vx > 0.2);
     }
 
     #[test]

@@ -4,6 +4,7 @@ use std::time::Duration;
 
 use monas_studio::Pace;
 
+use super::RunArguments;
 use crate::terminal::{Interrupt, WallClock};
 
 /// The longest wait before a run looks after requests.
@@ -50,6 +51,16 @@ impl Pacer {
             }
         }
     }
+}
+
+/// The pace at the beginning.
+pub(super) fn factor(arguments: &RunArguments) -> f64 {
+    #[cfg(unix)]
+    let is_viewed = arguments.studio;
+    #[cfg(not(unix))]
+    let is_viewed = false;
+    let unlimited = if arguments.realtime || is_viewed { 1.0 } else { f64::INFINITY };
+    arguments.pace.unwrap_or(unlimited)
 }
 
 /// The wall-clock time at which a simulated time is due; with a factor of 0 it never is.

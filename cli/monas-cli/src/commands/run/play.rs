@@ -8,7 +8,7 @@ use monas_studio::Pace;
 use monas_tape::Tape;
 
 use super::outputs::RecordingAlarm;
-use super::pacer::Pacer;
+use super::pacer::{Pacer, factor};
 #[cfg(unix)]
 use super::processes::{self, RobotProcesses};
 #[cfg(unix)]
@@ -137,14 +137,4 @@ fn play(
     }
     alarm.check(handle.now());
     Ok(running)
-}
-
-/// The pace at the beginning.
-fn factor(arguments: &RunArguments) -> f64 {
-    #[cfg(unix)]
-    let is_viewed = arguments.studio;
-    #[cfg(not(unix))]
-    let is_viewed = false;
-    let unlimited = if arguments.realtime || is_viewed { 1.0 } else { f64::INFINITY };
-    arguments.pace.unwrap_or(unlimited)
 }

@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 use yase::Diagnostic;
 
 use super::outputs::RecordingAlarm;
-use super::{RunArguments, bodies, control, links, outputs};
+use super::{RunArguments, bodies, control, links, lockstep, outputs};
 use crate::input::load_agents;
 use crate::terminal::{CommandFailure, CommandOutput, Exit, Format, Interrupt, WallClock, report, table};
 
@@ -19,12 +19,16 @@ pub(crate) fn execute(
     layers: &Layers,
     console: &mut CommandOutput<'_>,
 ) -> Result<Exit, CommandFailure> {
-    if arguments.seed.is_some() {
-        return Err(CommandFailure::Usage(
-            "--seed is for simulated time; these agents run in real time".into(),
-        ));
-    }
     let talws = talws(arguments, layers, console)?;
+    if talws.has_own_time() {
+        return lockstep::execute(talws, arguments, layers, console);
+    }
+    for (option, is_given) in [("--seed", arguments.seed.is_some()), ("--pace", arguments.pace.is_some())] {
+        if is_given {
+            let message = format!("{option} is for simulated time; these agents run in real time");
+            return Err(CommandFailure::Usage(message));
+        }
+    }
     run(talws, Talws::LOCAL, arguments, layers, console)
 }
 
@@ -102,7 +106,11 @@ fn talws(
     Ok(Talws::new().setup(setup))
 }
 
-fn write(out: &mut dyn Write, format: Format, agents: &[AgentStatistics]) -> Result<(), CommandFailure> {
+pub(super) fn write(
+    out: &mut dyn Write,
+    format: Format,
+    agents: &[AgentStatistics],
+) -> Result<(), CommandFailure> {
     if format == Format::Json {
         agents.iter().try_for_each(|agent| writeln!(out, "{}", object(agent)))?;
         return Ok(());

@@ -1,0 +1,284 @@
+//! A T1 on a server as a body.
+
+use std::time::Duration;
+
+use monas_robot::{Actuators, Anatomy, JointCommands, Percepts, Robot};
+use narukom::Timestamp;
+
+use crate::anatomy::{CYCLE, STRAIGHT_HEIGHT};
+use crate::connection::Connection;
+use crate::control::T1Control;
+use crate::effector::Effectors;
+use crate::error::Error;
+use crate::match_rules::{FieldPose, MatchRules};
+use crate::monitor::Monitor;
+use crate::options::Options;
+use crate::percept::{PlayMode, Side};
+use crate::policy::PolicyWalk;
+use crate::server::Server;
+use crate::sine_walk::{SineParameters, SineWalk};
+use crate::walk::WalkEngine;
+
+/// The usual address of a server for agents.
+pub(crate) const ADDRESS: &str = "127.0.0.1:60000";
+/// A torso that has moved by more than this in a cycle was placed, m.
+const JUMP: f64 = 0.2;
+/// How long a robot lies before it is picked up, s.
+const LYING: f64 = 5.0;
+/// How far behind the place where it fell a robot is put on its feet, m: not on the ball.
+const BEHIND: f64 = 0.7;
+/// The cycles that a robot has to come to a stand before the kick-off.
+const SETTLING: u32 = 100;
+/// The cycles that a command to the monitor may take to show.
+const PATIENCE: u32 = 250;
+/// How long the server has to take up a command to the monitor before its next cycle begins.
+const TAKING_UP: Duration = Duration::from_millis(20);
+
+/// A Booster T1 on a server.
+///
+/// In lockstep, which is the default, the body has its own time: each call of
+/// [`sense`](Robot::sense) sends the commands of one cycle and waits for the server's answer, 20 ms
+/// later in simulated time. In real time it takes what has arrived and never waits.
+pub struct T1 {
+    control: T1Control,
+    rules: MatchRules,
+    connection: Connection,
+    monitor: Option<Monitor>,
+    message: Effectors,
+    lockstep: bool,
+    pick_up: bool,
+    /// Whether a message of the server was received that has to be answered.
+    owes_answer: bool,
+    measured_at: Timestamp,
+    /// Cycles since the robot fell.
+    lying: u32,
+    before: [f64; 3],
+    /// Ends last, after the connections.
+    _server: Option<Server>,
+}
+
+impl T1 {
+    /// Connects to the server at an address, or starts one, and sets the game up.
+    pub(crate) fn open(address: Option<&str>, options: &Options) -> Result<T1, Error> {
+        let walk = walk(options)?;
+        let lockstep = !options.realtime;
+        let (server, monitor, connection) = match address {
+            Some(address) => {
+                let monitor = options.monitor.as_deref().map(Monitor::connect).transpose()?;
+                (None, monitor, Connection::open(address)?)
+            }
+            None => {
+                let mut server = Server::start(options.server.as_deref(), lockstep)?;
+                let monitor = server.monitor()?;
+                let connection = Connection::open(server.agents())?;
+                (Some(server), Some(monitor), connection)
+            }
+        };
+        let mut rules = MatchRules::new(options.team.clone(), options.number, options.field);
+        rules.half = options.half;
+        let mut body = T1 {
+            control: T1Control::new(walk),
+            rules,
+            connection,
+            monitor,
+            message: Effectors::default(),
+            lockstep,
+            pick_up: options.pick_up,
+            owes_answer: false,
+            measured_at: Timestamp::ZERO,
+            lying: 0,
+            before: [0.0; 3],
+            _server: server,
+        };
+        body.join(options)?;
+        Ok(body)
+    }
+
+    /// Where the server says that the torso is: x, y and z on the field, m. No percept of the body
+    /// has it; trials compare with it.
+    pub fn true_position(&self) -> [f64; 3] {
+        self.control.percept().true_position
+    }
+
+    /// The heading of the torso that the server says, rad.
+    pub fn true_heading(&self) -> f64 {
+        let [w, x, y, z] = self.control.percept().true_orientation;
+        libm::atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
+    }
+
+    /// Whether the robot lies.
+    pub fn is_fallen(&self) -> bool {
+        self.control.is_fallen()
+    }
+
+    /// The monitor, if the server was started here or its address is known.
+    pub fn monitor(&mut self) -> Option<&mut Monitor> {
+        self.monitor.as_mut()
+    }
+
+    /// Joins the game, goes to its place, and waits until the game has begun if it begins it.
+    fn join(&mut self, options: &Options) -> Result<(), Error> {
+        self.message.clear();
+        self.message.init("T1", &options.team, options.number);
+        self.connection.send(self.message.as_bytes())?;
+        self.receive()?;
+        self.rules.observe(&self.control.percept().game);
+        let FieldPose { x, y, heading } = options.start;
+        self.message.clear();
+        self.message.beam(x, y, heading);
+        self.answer()?;
+        self.receive()?;
+        for _ in 0..SETTLING {
+            self.exchange()?;
+        }
+        if options.kick_off && self.monitor.is_some() {
+            self.kick_off()?;
+        }
+        Ok(())
+    }
+
+    /// Gives the own team the kick-off and waits until it shows.
+    fn kick_off(&mut self) -> Result<(), Error> {
+        let own = self.rules.side;
+        self.instruct(|monitor| monitor.kick_off(own))?;
+        for _ in 0..PATIENCE {
+            if self.control.percept().game.play_mode != PlayMode::BeforeKickOff {
+                return Ok(());
+            }
+            self.exchange()?;
+        }
+        Err(Error::protocol("the server gives no kick-off"))
+    }
+
+    /// Sends a command to the monitor, so that it is taken up before the next cycle.
+    fn instruct(&mut self, command: impl FnOnce(&mut Monitor) -> Result<(), Error>) -> Result<(), Error> {
+        if let Some(monitor) = &mut self.monitor {
+            command(monitor)?;
+            if self.lockstep {
+                crate::connection::pause(TAKING_UP);
+            }
+        }
+        Ok(())
+    }
+
+    /// One cycle: sends the commands to the motors, waits for the percepts.
+    fn exchange(&mut self) -> Result<(), Error> {
+        self.message.clear();
+        self.answer()?;
+        self.receive()
+    }
+
+    /// Adds the commands to the motors to the message, and sends it.
+    fn answer(&mut self) -> Result<(), Error> {
+        self.control.advance(&mut self.message);
+        self.owes_answer = false;
+        self.connection.send(self.message.as_bytes())
+    }
+
+    /// Waits for the percepts of a cycle.
+    fn receive(&mut self) -> Result<(), Error> {
+        let (control, rules) = (&mut self.control, &self.rules);
+        self.connection.receive(|message| control.receive(message, rules))?;
+        self.received()
+    }
+
+    fn received(&mut self) -> Result<(), Error> {
+        self.owes_answer = true;
+        if let Some(monitor) = &mut self.monitor {
+            monitor.drain()?;
+        }
+        self.notice_placement();
+        self.pick_up()
+    }
+
+    /// A robot that is somewhere else at once was placed by the referee, who says where.
+    fn notice_placement(&mut self) {
+        let position = self.true_position();
+        let jump = libm::hypot(position[0] - self.before[0], position[1] - self.before[1]);
+        self.before = position;
+        if jump > JUMP {
+            self.control.placed();
+            self.rules.placed(FieldPose { x: position[0], y: position[1], heading: self.true_heading() });
+        }
+    }
+
+    /// Puts a robot that has lain for a while on its feet, behind where it fell.
+    fn pick_up(&mut self) -> Result<(), Error> {
+        self.lying = if self.control.is_fallen() { self.lying + 1 } else { 0 };
+        if !self.pick_up || f64::from(self.lying) * CYCLE.as_secs_f64() < LYING {
+            return Ok(());
+        }
+        self.lying = 0;
+        let (team, number, side) = (self.rules.team.clone(), self.rules.number, self.rules.side);
+        let (ahead, heading) = match side {
+            Side::Left => (1.0, 0.0),
+            Side::Right => (-1.0, std::f64::consts::PI),
+        };
+        let [x, y, _] = self.true_position();
+        let place = [x - ahead * BEHIND, y, STRAIGHT_HEIGHT];
+        self.instruct(|monitor| monitor.place_robot(&team, number, place, heading))
+    }
+
+    fn cycle(&mut self, now: Timestamp) -> Result<(), Error> {
+        if self.lockstep {
+            // What was received last is as old as the call before.
+            self.measured_at = now;
+            return if self.owes_answer { self.exchange() } else { self.receive() };
+        }
+        let (control, rules) = (&mut self.control, &self.rules);
+        let mut arrived = false;
+        self.connection.drain(|message| {
+            arrived = true;
+            control.receive(message, rules)
+        })?;
+        if arrived {
+            self.measured_at = now;
+            self.received()?;
+        }
+        self.message.clear();
+        if std::mem::take(&mut self.owes_answer) { self.answer() } else { Ok(()) }
+    }
+}
+
+/// The walk that the options name.
+fn walk(options: &Options) -> Result<Box<dyn WalkEngine>, Error> {
+    match (&options.policy, &options.walk) {
+        (Some(_), Some(_)) => {
+            Err(Error::configuration("a robot walks by a `policy` or by a `walk`, not by both"))
+        }
+        (Some(policy), None) => Ok(Box::new(PolicyWalk::load(policy)?)),
+        (None, Some(file)) => Ok(Box::new(SineWalk::new(SineParameters::load(file)?))),
+        (None, None) => Ok(Box::new(SineWalk::new(SineParameters::own()?))),
+    }
+}
+
+impl Robot for T1 {
+    fn anatomy(&self) -> &Anatomy {
+        self.control.anatomy()
+    }
+
+    fn sense(&mut self, now: Timestamp, percepts: &mut Percepts) -> Result<(), monas_robot::Error> {
+        self.cycle(now)?;
+        self.control.percepts(self.measured_at, percepts);
+        percepts.announcement = self.rules.news(&self.control.percept().game);
+        Ok(())
+    }
+
+    fn act(&mut self, _now: Timestamp, actuators: &Actuators) -> Result<(), monas_robot::Error> {
+        self.control.act(actuators);
+        Ok(())
+    }
+
+    fn command_joints(
+        &mut self,
+        _now: Timestamp,
+        commands: &JointCommands,
+    ) -> Result<(), monas_robot::Error> {
+        self.control.command_joints(commands)
+    }
+
+    fn rest(&mut self, _now: Timestamp) -> Result<(), monas_robot::Error> {
+        self.control.rest();
+        Ok(())
+    }
+}

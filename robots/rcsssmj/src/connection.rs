@@ -1,0 +1,123 @@
+//! A TCP connection to the server, with messages in frames.
+
+use std::io::{ErrorKind, Read, Write};
+use std::net::{TcpStream, ToSocketAddrs};
+use std::sync::{Condvar, Mutex, PoisonError};
+use std::time::Duration;
+
+use crate::error::Error;
+use crate::frame::{self, FrameReader};
+
+/// How long an attempt to connect lasts.
+const CONNECTING: Duration = Duration::from_secs(2);
+/// A connection on which a message is awaited for this time has ended. The server waits five
+/// seconds for an agent itself, and compiles its world anew when robots come and go.
+const SILENCE: Duration = Duration::from_secs(20);
+/// How long a message may take to be sent.
+const SENDING: Duration = Duration::from_secs(5);
+
+/// A connection to one of the server's ports.
+#[derive(Debug)]
+pub(crate) struct Connection {
+    stream: TcpStream,
+    reader: FrameReader,
+    bytes: Vec<u8>,
+    waits: bool,
+}
+
+impl Connection {
+    /// Connects to an address such as `127.0.0.1:60000`.
+    pub(crate) fn open(address: &str) -> Result<Connection, Error> {
+        let failed =
+            |error: std::io::Error| Error::disconnected(format!("{address} does not answer: {error}"));
+        let mut last = None;
+        for place in address.to_socket_addrs().map_err(failed)? {
+            match TcpStream::connect_timeout(&place, CONNECTING) {
+                Ok(stream) => {
+                    stream.set_nodelay(true).map_err(failed)?;
+                    stream.set_read_timeout(Some(SILENCE)).map_err(failed)?;
+                    stream.set_write_timeout(Some(SENDING)).map_err(failed)?;
+                    let (reader, bytes) = (FrameReader::default(), Vec::new());
+                    return Ok(Connection { stream, reader, bytes, waits: true });
+                }
+                Err(error) => last = Some(error),
+            }
+        }
+        Err(match last {
+            Some(error) => failed(error),
+            None => Error::disconnected(format!("{address} is the address of nothing")),
+        })
+    }
+
+    pub(crate) fn send(&mut self, message: &[u8]) -> Result<(), Error> {
+        self.wait(true)?;
+        self.bytes.clear();
+        frame::write(message, &mut self.bytes);
+        self.stream.write_all(&self.bytes).map_err(|error| ended(&error.to_string()))
+    }
+
+    /// Waits for the next message and reads it.
+    pub(crate) fn receive<T>(&mut self, read: impl FnOnce(&[u8]) -> Result<T, Error>) -> Result<T, Error> {
+        self.wait(true)?;
+        while !self.reader.has_message()? {
+            self.fill()?;
+        }
+        match self.reader.next_message()? {
+            Some(message) => read(message),
+            None => Err(ended("a message was lost")),
+        }
+    }
+
+    /// Calls `read` with each message that has arrived, and does not wait.
+    pub(crate) fn drain(&mut self, mut read: impl FnMut(&[u8]) -> Result<(), Error>) -> Result<(), Error> {
+        self.wait(false)?;
+        loop {
+            while let Some(message) = self.reader.next_message()? {
+                read(message)?;
+            }
+            if !self.fill()? {
+                return Ok(());
+            }
+        }
+    }
+
+    /// Reads what has arrived; returns false if nothing has, and reading does not wait.
+    fn fill(&mut self) -> Result<bool, Error> {
+        let mut bytes = [0; 16 * 1024];
+        match self.stream.read(&mut bytes) {
+            Ok(0) => Err(ended("the server has closed it")),
+            Ok(length) => {
+                self.reader.push(&bytes[..length]);
+                Ok(true)
+            }
+            Err(error) if error.kind() == ErrorKind::Interrupted => Ok(true),
+            Err(error) if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut) => {
+                match self.waits {
+                    true => Err(ended(&format!("nothing has arrived for {} s", SILENCE.as_secs()))),
+                    false => Ok(false),
+                }
+            }
+            Err(error) => Err(ended(&error.to_string())),
+        }
+    }
+
+    fn wait(&mut self, waits: bool) -> Result<(), Error> {
+        if self.waits != waits {
+            self.stream.set_nonblocking(!waits).map_err(|error| ended(&error.to_string()))?;
+            self.waits = waits;
+        }
+        Ok(())
+    }
+}
+
+/// Gives another process time, while that of the agents stands still.
+pub(crate) fn pause(time: Duration) {
+    let nothing = (Mutex::new(()), Condvar::new());
+    let guard = nothing.0.lock().unwrap_or_else(PoisonError::into_inner);
+    // Nothing is awaited but the time.
+    let _ = nothing.1.wait_timeout_while(guard, time, |()| true);
+}
+
+fn ended(why: &str) -> Error {
+    Error::disconnected(format!("the connection to the simulation server has ended: {why}"))
+}

@@ -1,0 +1,369 @@
+//! What a T1 does in each cycle: commands in the plane and of joints become commands to motors,
+//! percepts of the server become percepts of the body.
+
+use monas_robot::{
+    Actuators, Anatomy, Error, Inertial, JointCommands, JointTargets, Joints, ObjectKind, Percepts, Posture,
+    Sensors, Sighting, Sightings, Skill,
+};
+use narukom::Timestamp;
+
+use crate::anatomy::{self, CYCLE_SECONDS, HEAD_PITCH, HEAD_YAW, JOINTS, LEFT_LEG};
+use crate::effector::{Effectors, MotorCommand};
+use crate::inertia::Inertia;
+use crate::kinematics::{Stance, inclination, seen_in_torso};
+use crate::match_rules::MatchRules;
+use crate::percept::{Percept, Sight};
+use crate::walk::{Gait, Motion, Motors, Ramp, WalkEngine, WalkVelocity};
+
+/// A torso that is more inclined than this has fallen, rad.
+const LYING: f64 = 1.0;
+/// A torso that is less inclined than this is upright, rad.
+const UPRIGHT: f64 = 0.4;
+/// How far the robot runs for a kick, m.
+const RUN: f64 = 1.4;
+/// How long it stands after a kick before the skill is over, s: it comes to a halt.
+const HALT: f64 = 0.6;
+/// Torque per angle and per angular velocity of a joint of a leg, and of another one, that is
+/// commanded by itself with a stiffness of 1.
+const GAINS: [(f64, f64); 2] = [(200.0, 5.0), (20.0, 1.0)];
+/// The gains of the head while the robot walks.
+const HEAD_GAINS: (f64, f64) = (20.0, 1.0);
+/// Torque per angular velocity of all joints of a robot that rests: it sinks.
+const SLACK: f64 = 2.0;
+
+/// What the robot does.
+#[derive(Clone, Copy, PartialEq, Debug)]
+enum Activity {
+    /// It follows the walk that is commanded.
+    Walking,
+    /// It runs through the ball, and then halts; seconds so far.
+    Kicking(f64),
+    /// It lies, and waits to be put on its feet.
+    Waiting,
+    /// It rests, for good.
+    Resting,
+}
+
+/// The state of a T1 between two cycles.
+pub(crate) struct T1Control {
+    anatomy: Anatomy,
+    gait: Gait,
+    walk: Box<dyn WalkEngine>,
+    ramp: Ramp,
+    activity: Activity,
+    commands: Actuators,
+    skill_number: u64,
+    skill_done: u64,
+    targets: JointTargets,
+    inertia: Inertia,
+    stance: Stance,
+    percept: Percept,
+    is_fallen: bool,
+    odometry: [f64; 3],
+    motors: Motors,
+    sightings: Sightings,
+    sighted: bool,
+}
+
+impl T1Control {
+    pub(crate) fn new(walk: Box<dyn WalkEngine>) -> T1Control {
+        let gait = walk.gait();
+        let inertia = Inertia::default();
+        T1Control {
+            anatomy: anatomy::anatomy(gait.x, gait.y, gait.turn),
+            gait,
+            walk,
+            ramp: Ramp::default(),
+            activity: Activity::Walking,
+            commands: Actuators::default(),
+            skill_number: 0,
+            skill_done: 0,
+            targets: JointTargets::default(),
+            stance: Stance::new(&[0.0; JOINTS], &inertia.down()),
+            inertia,
+            percept: Percept::default(),
+            is_fallen: false,
+            odometry: [0.0; 3],
+            motors: [MotorCommand::default(); JOINTS],
+            sightings: Sightings::default(),
+            sighted: false,
+        }
+    }
+
+    pub(crate) fn anatomy(&self) -> &Anatomy {
+        &self.anatomy
+    }
+
+    /// The percepts of the last message.
+    pub(crate) fn percept(&self) -> &Percept {
+        &self.percept
+    }
+
+    /// Takes a message of the server.
+    pub(crate) fn receive(&mut self, message: &[u8], rules: &MatchRules) -> Result<(), crate::Error> {
+        self.percept.decode(message)?;
+        self.inertia.advance(self.percept.gyro, self.percept.acceleration, CYCLE_SECONDS);
+        let before =
+            std::mem::replace(&mut self.stance, Stance::new(&self.percept.positions, &self.inertia.down()));
+        let tilt = self.tilt();
+        self.is_fallen = tilt > LYING || (self.is_fallen && tilt > UPRIGHT);
+        if tilt < UPRIGHT {
+            self.measure_step(&before);
+        }
+        if self.percept.has_sights {
+            self.look(rules);
+        }
+        Ok(())
+    }
+
+    /// The robot was put upright to another place: what it knew of its motion is void.
+    pub(crate) fn placed(&mut self) {
+        self.inertia = Inertia::default();
+        self.stance = Stance::new(&self.percept.positions, &self.inertia.down());
+        self.is_fallen = false;
+        self.ramp.reset();
+        self.walk.reset();
+        if self.activity != Activity::Resting {
+            self.end_skill();
+        }
+    }
+
+    /// Adds the motion of the torso over the foot on the ground to the odometry.
+    fn measure_step(&mut self, before: &Stance) {
+        let turned = self.inertia.turn(self.percept.gyro) * CYCLE_SECONDS;
+        let corner = self.stance.contact();
+        let (from, to) = (before.hips_from(corner), self.stance.hips_from(corner));
+        let (sin, cos) = libm::sincos(turned);
+        let (x, y) = (cos * to.x - sin * to.y - from.x, sin * to.x + cos * to.y - from.y);
+        let [all_x, all_y, heading] = self.odometry;
+        let (sin, cos) = libm::sincos(heading);
+        self.odometry = [all_x + cos * x - sin * y, all_y + sin * x + cos * y, heading + turned];
+    }
+
+    /// Turns what the camera sees into objects in the robot frame.
+    fn look(&mut self, rules: &MatchRules) {
+        self.sighted = true;
+        let image = &mut self.sightings;
+        image.objects.clear();
+        image.head_yaw = self.percept.positions[HEAD_YAW];
+        image.head_pitch = self.percept.positions[HEAD_PITCH];
+        for sight in &self.percept.sights {
+            let (kind, colour, at) = match sight {
+                Sight::Ball(at) => (ObjectKind::Ball, monas_robot::Colour::NoColour, at),
+                Sight::Post { goal, is_upper, at } => {
+                    let (kind, colour) = rules.post(*goal, *is_upper);
+                    (kind, colour, at)
+                }
+                Sight::Robot { team, number, at } => match rules.robot(team, *number) {
+                    Some(colour) => (ObjectKind::Robot, colour, at),
+                    None => continue,
+                },
+                // Bodies report no marks of the lines.
+                Sight::Mark { .. } => continue,
+            };
+            let place = self.stance.on_ground(&seen_in_torso(at, &self.percept.positions));
+            image.objects.push(Sighting {
+                kind: kind as i32,
+                bearing: libm::atan2(place.y, place.x),
+                distance: libm::hypot(place.x, place.y),
+                colour: colour as i32,
+            });
+        }
+    }
+
+    /// Advances the motion by one cycle and writes the commands to the motors.
+    pub(crate) fn advance(&mut self, message: &mut Effectors) {
+        match self.wanted() {
+            Some(velocity) => {
+                let velocity = self.ramp.advance(velocity, &self.gait, CYCLE_SECONDS);
+                let motion = Motion {
+                    positions: self.percept.positions,
+                    velocities: self.percept.velocities,
+                    gyro: self.percept.gyro,
+                    down: self.inertia.down(),
+                };
+                self.walk.advance(velocity, &motion, &mut self.motors);
+                self.move_head();
+                self.move_joints();
+            }
+            None => {
+                self.ramp.reset();
+                let slack = MotorCommand { damping: SLACK, ..MotorCommand::default() };
+                self.motors = [slack; JOINTS];
+            }
+        }
+        for (joint, motor) in self.motors.iter().enumerate() {
+            message.motor(joint, motor);
+        }
+    }
+
+    /// The velocity to walk with; none for a robot whose joints are slack.
+    fn wanted(&mut self) -> Option<WalkVelocity> {
+        let tilt = self.tilt();
+        match &mut self.activity {
+            Activity::Resting | Activity::Waiting => None,
+            _ if self.is_fallen => None,
+            Activity::Walking => {
+                let Actuators { walk_x, walk_y, walk_turn, .. } = self.commands;
+                Some(WalkVelocity { x: walk_x, y: walk_y, turn: walk_turn })
+            }
+            Activity::Kicking(seconds) => {
+                *seconds += CYCLE_SECONDS;
+                let run = RUN / self.gait.run;
+                if *seconds > run + HALT && tilt < UPRIGHT {
+                    self.end_skill();
+                    return Some(WalkVelocity::default());
+                }
+                let x = if *seconds <= run { self.gait.run } else { 0.0 };
+                Some(WalkVelocity { x, ..WalkVelocity::default() })
+            }
+        }
+    }
+
+    fn end_skill(&mut self) {
+        self.skill_done = self.skill_number;
+        self.activity = Activity::Walking;
+    }
+
+    fn move_head(&mut self) {
+        let (stiffness, damping) = HEAD_GAINS;
+        let Actuators { head_yaw, head_pitch, .. } = self.commands;
+        for (joint, angle) in [
+            (HEAD_YAW, self.anatomy.head_yaw.clamp(head_yaw)),
+            (HEAD_PITCH, self.anatomy.head_pitch.clamp(head_pitch)),
+        ] {
+            self.motors[joint] = MotorCommand { angle, stiffness, damping, ..MotorCommand::default() };
+        }
+    }
+
+    fn move_joints(&mut self) {
+        for (joint, motor) in self.motors.iter_mut().enumerate() {
+            if let Some((angle, stiffness)) = self.targets.of(joint) {
+                let (most, damping) = GAINS[usize::from(joint < LEFT_LEG)];
+                *motor =
+                    MotorCommand { angle, stiffness: stiffness * most, damping, ..MotorCommand::default() };
+            }
+        }
+    }
+
+    /// Sets the commands in the plane. A skill begins if its number is new and no other is active.
+    pub(crate) fn act(&mut self, actuators: &Actuators) {
+        if self.activity == Activity::Resting {
+            return;
+        }
+        self.commands = *actuators;
+        let (number, skill) = (actuators.skill_number, actuators.skill());
+        if number == self.skill_number {
+            return;
+        }
+        self.skill_number = number;
+        self.activity = match (self.activity, skill) {
+            (Activity::Walking, Skill::KickLeft | Skill::KickRight) if !self.is_fallen => {
+                Activity::Kicking(0.0)
+            }
+            (Activity::Walking, Skill::StandUp) if self.is_fallen => Activity::Waiting,
+            (Activity::Walking, _) => {
+                self.skill_done = number;
+                Activity::Walking
+            }
+            (busy, _) => busy,
+        };
+    }
+
+    pub(crate) fn command_joints(&mut self, commands: &JointCommands) -> Result<(), Error> {
+        self.targets.set(commands, &self.anatomy)
+    }
+
+    /// Stands still, for good: the joints of a robot that lies become slack. The server has no
+    /// motion to sit down with.
+    pub(crate) fn rest(&mut self) {
+        self.commands = Actuators::default();
+        self.targets = JointTargets::default();
+        self.activity = Activity::Resting;
+    }
+
+    /// Whether the robot lies.
+    pub(crate) fn is_fallen(&self) -> bool {
+        self.is_fallen
+    }
+
+    fn tilt(&self) -> f64 {
+        let (roll, pitch) = inclination(&self.inertia.down());
+        roll.abs().max(pitch.abs())
+    }
+
+    fn posture(&self) -> Posture {
+        match self.activity {
+            Activity::Waiting => Posture::StandingUp,
+            _ if self.is_fallen => Posture::Fallen,
+            Activity::Resting => Posture::Sitting,
+            Activity::Kicking(_) => Posture::Busy,
+            Activity::Walking if self.tilt() > UPRIGHT => Posture::Busy,
+            Activity::Walking if self.ramp.velocity() != WalkVelocity::default() => Posture::Walking,
+            Activity::Walking => Posture::Standing,
+        }
+    }
+
+    /// Writes what was measured; odometry since the last call.
+    pub(crate) fn percepts(&mut self, measured_at: Timestamp, percepts: &mut Percepts) {
+        let measured_at = measured_at.as_nanos();
+        let [odometry_x, odometry_y, odometry_turn] = std::mem::take(&mut self.odometry);
+        let (torso_roll, torso_pitch) = inclination(&self.inertia.down());
+        let positions = &self.percept.positions;
+        percepts.sensors = Sensors {
+            measured_at,
+            head_yaw: self.anatomy.head_yaw.clamp(positions[HEAD_YAW]),
+            head_pitch: self.anatomy.head_pitch.clamp(positions[HEAD_PITCH]),
+            torso_roll,
+            torso_pitch,
+            odometry_x,
+            odometry_y,
+            odometry_turn,
+            posture: self.posture() as i32,
+            skill_done: self.skill_done,
+            battery: 1.0,
+            relaxed: self.motors.iter().all(|motor| motor.stiffness <= 0.0),
+            ..Sensors::default()
+        };
+        if std::mem::take(&mut self.sighted) {
+            self.sightings.taken_at = measured_at;
+            percepts.sightings = Some(self.sightings.clone());
+        }
+        self.write_joints(measured_at, percepts.joints.get_or_insert_default());
+        let ([gyro_x, gyro_y, gyro_z], [acceleration_x, acceleration_y, acceleration_z]) =
+            (self.percept.gyro, self.percept.acceleration);
+        percepts.inertial = Some(Inertial {
+            measured_at,
+            gyro_x,
+            gyro_y,
+            gyro_z,
+            acceleration_x,
+            acceleration_y,
+            acceleration_z,
+            roll: torso_roll,
+            pitch: torso_pitch,
+        });
+    }
+
+    fn write_joints(&self, measured_at: u64, joints: &mut Joints) {
+        joints.measured_at = measured_at;
+        // The stops of the server's joints give way by some hundredths under load.
+        let within = |(joint, angle): (usize, &f64)| anatomy::limits(joint).clamp(*angle);
+        refill(&mut joints.positions, self.percept.positions.iter().enumerate().map(within));
+        refill(&mut joints.velocities, self.percept.velocities);
+        // The server's motors have neither heat nor current.
+        refill(&mut joints.temperatures, [0.0; JOINTS]);
+        refill(&mut joints.currents, [0.0; JOINTS]);
+        let stiffness = |(joint, motor): (usize, &MotorCommand)| {
+            (motor.stiffness / GAINS[usize::from(joint < LEFT_LEG)].0).clamp(0.0, 1.0)
+        };
+        refill(&mut joints.stiffnesses, self.motors.iter().enumerate().map(stiffness));
+        joints.clamped = self.targets.clamped();
+    }
+}
+
+/// Replaces the values of a list in its memory.
+fn refill(list: &mut Vec<f64>, values: impl IntoIterator<Item = f64>) {
+    list.clear();
+    list.extend(values);
+}

@@ -1,0 +1,139 @@
+//! The simulation server as a process that the body starts.
+
+use std::fs::File;
+use std::net::TcpListener;
+use std::path::PathBuf;
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+use crate::error::Error;
+use crate::monitor::Monitor;
+
+/// The program, as its package installs it.
+pub(crate) const PROGRAM: &str = "rcssservermj";
+/// How a missing program is installed.
+const INSTALL: &str =
+    "install it with `pip install rcsssmj==0.2.1`, or name the program in the attribute `server`";
+/// How long the server may take to answer: Python and the physics are loaded first.
+const STARTING: Duration = Duration::from_secs(90);
+/// The pause between two attempts to connect.
+const RETRY: Duration = Duration::from_millis(100);
+
+/// A running server; it ends with this value.
+#[derive(Debug)]
+pub struct Server {
+    process: Child,
+    /// Where it writes its log.
+    folder: PathBuf,
+    agents: String,
+    monitors: String,
+}
+
+impl Server {
+    /// Starts the server at two free ports of this computer. In lockstep it computes as fast as it
+    /// can and waits for the agents in each cycle, otherwise it keeps real time.
+    ///
+    /// # Errors
+    /// There is no such program, or it cannot be started.
+    pub fn start(program: Option<&str>, lockstep: bool) -> Result<Server, Error> {
+        let program = program.unwrap_or(PROGRAM);
+        let [agents, monitors] = free_ports()?;
+        let failed =
+            |what: std::io::Error| Error::configuration(format!("the server cannot be started: {what}"));
+        let folder = std::env::temp_dir().join(format!("monas-rcsssmj-{}-{agents}", std::process::id()));
+        std::fs::create_dir_all(&folder).map_err(failed)?;
+        let log = File::create(folder.join("output.log")).map_err(failed)?;
+        let mut command = Command::new(program);
+        command.args(["--no-render", "--host", "127.0.0.1"]);
+        command.args(["--aport", &agents.to_string(), "--mport", &monitors.to_string()]);
+        if lockstep {
+            command.args(["--sync", "--no-realtime"]);
+        }
+        let errors = log.try_clone().map_err(failed)?;
+        command.current_dir(&folder).stdin(Stdio::null()).stdout(log).stderr(errors);
+        // An interrupt from the keyboard ends the run first, and the run its server.
+        #[cfg(unix)]
+        std::os::unix::process::CommandExt::process_group(&mut command, 0);
+        let process = command.spawn().map_err(|error| {
+            let _ = std::fs::remove_dir_all(&folder);
+            match error.kind() {
+                std::io::ErrorKind::NotFound => {
+                    Error::configuration(format!("there is no program `{program}`: {INSTALL}"))
+                }
+                _ => Error::configuration(format!("`{program}` cannot be started: {error}")),
+            }
+        })?;
+        let address = |port| format!("127.0.0.1:{port}");
+        Ok(Server { process, folder, agents: address(agents), monitors: address(monitors) })
+    }
+
+    /// The address for agents.
+    pub fn agents(&self) -> &str {
+        &self.agents
+    }
+
+    /// The address for monitors.
+    pub fn monitors(&self) -> &str {
+        &self.monitors
+    }
+
+    #[allow(clippy::disallowed_methods)] // waits for another process, before the run begins
+    /// A monitor of the server, once it makes its cycles. Version 0.2.1 ends with an error when an
+    /// agent joins in the first one.
+    pub(crate) fn monitor(&mut self) -> Result<Monitor, Error> {
+        let begun = Instant::now();
+        loop {
+            match Monitor::connect(&self.monitors).and_then(Monitor::begun) {
+                Ok(monitor) => return Ok(monitor),
+                Err(error) if begun.elapsed() > STARTING => return Err(error),
+                Err(_) => {}
+            }
+            if let Ok(Some(status)) = self.process.try_wait() {
+                let log = std::fs::read_to_string(self.folder.join("output.log")).unwrap_or_default();
+                let last = log.lines().rev().find(|line| !line.trim().is_empty()).unwrap_or("no output");
+                return Err(Error::configuration(format!("the server has ended, {status}: {last}")));
+            }
+            crate::connection::pause(RETRY);
+        }
+    }
+}
+
+impl Drop for Server {
+    fn drop(&mut self) {
+        // A process that has ended already is no error.
+        let _ = self.process.kill();
+        let _ = self.process.wait();
+        let _ = std::fs::remove_dir_all(&self.folder);
+    }
+}
+
+/// Two ports that are free at present.
+fn free_ports() -> Result<[u16; 2], Error> {
+    let failed = |error: std::io::Error| Error::configuration(format!("no free port: {error}"));
+    let listen = || TcpListener::bind("127.0.0.1:0").map_err(failed);
+    let (one, other) = (listen()?, listen()?);
+    let port = |listener: &TcpListener| listener.local_addr().map(|at| at.port()).map_err(failed);
+    Ok([port(&one)?, port(&other)?])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_missing_program_is_reported_with_the_command_that_installs_it() {
+        let error = Server::start(Some("no-such-rcssservermj"), true).unwrap_err();
+        assert_eq!(error.kind(), crate::ErrorKind::Configuration);
+        let expected =
+            "there is no program `no-such-rcssservermj`: install it with `pip install rcsssmj==0.2.1`";
+        assert!(error.to_string().starts_with(expected), "{error}");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_program_that_ends_is_reported_with_its_status() {
+        let mut server = Server::start(Some("false"), true).unwrap();
+        let error = server.monitor().unwrap_err().to_string();
+        assert!(error.starts_with("the server has ended, exit status: 1"), "{error}");
+    }
+}

@@ -1,0 +1,64 @@
+//! A T1 on the soccer server, if the program `rcssservermj` is there.
+#![allow(clippy::unwrap_used)] // tests
+
+use std::collections::BTreeMap;
+use std::process::{Command, Stdio};
+
+use monas_rcsssmj::T1;
+use monas_robot::{Actuators, BodySite, Percepts, Posture, Robot, conformance};
+use narukom::Timestamp;
+
+/// A robot with the project's own walk; none, loudly, without the server.
+fn robot() -> Option<T1> {
+    let mut help = Command::new("rcssservermj");
+    help.arg("--help").current_dir(std::env::temp_dir()).stdout(Stdio::null()).stderr(Stdio::null());
+    if !help.status().is_ok_and(|status| status.success()) {
+        eprintln!("\n!! SKIPPED: no rcssservermj in PATH; `pip install rcsssmj==0.2.1` brings it\n");
+        return None;
+    }
+    let options = BTreeMap::from([("start_x".to_owned(), "-12".to_owned())]);
+    Some(monas_rcsssmj::open(&BodySite { options, ..BodySite::default() }).unwrap())
+}
+
+/// Runs for a time with a command; returns the odometry: x, y and heading.
+fn run(robot: &mut T1, cycle: &mut u64, seconds: f64, command: &Actuators) -> [f64; 3] {
+    let (mut percepts, mut way) = (Percepts::default(), [0.0; 3]);
+    for _ in 0..(seconds * 50.0) as usize {
+        *cycle += 1;
+        let now = Timestamp::from_nanos(*cycle * 20_000_000);
+        percepts.clear_news();
+        robot.sense(now, &mut percepts).unwrap();
+        robot.act(now, command).unwrap();
+        let felt = &percepts.sensors;
+        let (sin, cos) = libm::sincos(way[2]);
+        way[0] += cos * felt.odometry_x - sin * felt.odometry_y;
+        way[1] += sin * felt.odometry_x + cos * felt.odometry_y;
+        way[2] += felt.odometry_turn;
+        assert_ne!(felt.posture(), Posture::Fallen, "it has fallen in cycle {cycle}");
+    }
+    way
+}
+
+#[test]
+fn its_own_walk_goes_ahead_and_turns_as_commanded_and_the_odometry_follows() {
+    let Some(mut robot) = robot() else { return };
+    let mut cycle = 0;
+    let ([x, y, _], heading) = (robot.true_position(), robot.true_heading());
+    let felt = run(&mut robot, &mut cycle, 12.0, &Actuators { walk_x: 0.42, ..Actuators::default() });
+    let [to_x, to_y, _] = robot.true_position();
+    println!("true {:.2} {:.2}, felt {felt:.2?}", to_x - x, to_y - y);
+    assert!((3.5..6.0).contains(&(to_x - x)) && (to_y - y).abs() < 1.0, "{} {}", to_x - x, to_y - y);
+    assert!((felt[0] - (to_x - x)).abs() < 0.8 && (felt[1] - (to_y - y)).abs() < 0.8, "{felt:?}");
+    run(&mut robot, &mut cycle, 3.0, &Actuators::default());
+    let before = robot.true_heading();
+    let felt = run(&mut robot, &mut cycle, 4.0, &Actuators { walk_turn: 0.45, ..Actuators::default() });
+    let turned = robot.true_heading() - before;
+    println!("turned {turned:.2} from {heading:.2}, felt {:.2}", felt[2]);
+    assert!((0.8..2.4).contains(&turned) && (felt[2] - turned).abs() < 0.15, "{turned} {felt:?}");
+}
+
+#[test]
+fn it_is_a_body_like_any_other() {
+    let Some(mut robot) = robot() else { return };
+    conformance::check(&mut robot);
+}
