@@ -60,12 +60,20 @@ pub struct ColourModel {
     pub white_luma: f32,
     /// Relative chroma of what is white.
     pub white: [f32; 2],
+    /// Standard deviation of the luma of the carpet: noise, and light that is not even.
+    pub deviation: f32,
 }
 
 impl Default for ColourModel {
     /// A green carpet in even, white light.
     fn default() -> ColourModel {
-        ColourModel { green_luma: 95.0, green: [-0.25, -0.35], white_luma: 220.0, white: [0.0, 0.0] }
+        ColourModel {
+            green_luma: 95.0,
+            green: [-0.25, -0.35],
+            white_luma: 220.0,
+            white: [0.0, 0.0],
+            deviation: 5.0,
+        }
     }
 }
 
@@ -123,6 +131,7 @@ impl ColourModel {
             green: [mix(self.green[0], other.green[0]), mix(self.green[1], other.green[1])],
             white_luma: mix(self.white_luma, other.white_luma),
             white: [mix(self.white[0], other.white[0]), mix(self.white[1], other.white[1])],
+            deviation: mix(self.deviation, other.deviation),
         }
     }
 }
@@ -175,11 +184,12 @@ impl ColourTable {
         self.classes[index(yuv[0], yuv[1], yuv[2])]
     }
 
-    /// Makes it the table of a model, if it is not about the same already.
+    /// Makes it the table of a model; the classes remain if they would be about the same.
     pub(crate) fn update(&mut self, model: &ColourModel) {
         if !self.model.is_near(model) {
             self.fill(*model);
         }
+        self.model.deviation = model.deviation;
     }
 
     fn fill(&mut self, model: ColourModel) {
@@ -251,6 +261,9 @@ impl Calibration {
     fn estimate(&mut self, image: &Image<'_>, camera: &Camera) -> Option<ColourModel> {
         let (green, samples) = self.carpet(image, camera)?;
         let green_luma = quantile(&self.green_luma, 0.5);
+        // One standard deviation below the middle: above it, there may be lines.
+        let deviation = (green_luma - quantile(&self.green_luma, 0.16)).clamp(1.0, 0.3 * green_luma.max(4.0));
+        let least = (1.35 * green_luma).max(green_luma + 4.0 * deviation).max(40.0);
         self.pale_luma.fill(0);
         // White is brighter than the carpet, and its chroma is far from that of the carpet.
         let (mut sum, mut count) = ([0.0f32; 2], 0.0f32);
@@ -260,7 +273,7 @@ impl Calibration {
             let chroma = relative(luma, u, v);
             let along = (chroma[0] * green[0] + chroma[1] * green[1]) / size;
             let across = (chroma[1] * green[0] - chroma[0] * green[1]).abs() / size;
-            if bright > 1.35 * green_luma && bright > 40.0 && along < 0.55 && across < 0.5 && along > -0.6 {
+            if bright > least && along < 0.55 && across < 0.5 && along > -0.6 {
                 self.pale_luma[usize::from(luma)] += 1;
                 (sum[0], sum[1], count) = (sum[0] + chroma[0], sum[1] + chroma[1], count + 1.0);
             }
@@ -276,7 +289,7 @@ impl Calibration {
                 ((ratio * green_luma).min(255.0), self.model.white)
             }
         };
-        Some(ColourModel { green_luma, green, white_luma, white })
+        Some(ColourModel { green_luma, green, white_luma, white, deviation })
     }
 
     /// The relative chroma of the carpet, and the number of samples; fills `green_luma`.

@@ -83,14 +83,11 @@ impl LineScan {
             ScanAxis::Column => (at, along),
             ScanAxis::Row => (along, at),
         };
-        self.profile.clear();
-        self.profile.extend((start..end).map(|along| {
-            let (x, y) = pixel(along);
-            look.image.luma(x, y)
-        }));
+        self.read_profile(look, axis, at, start, end);
         let model = look.table.model();
-        // A far line is blurred: a third of the step from carpet to white is enough.
-        let least = (0.17 * (model.white_luma - model.green_luma)).max(7.0) as i32;
+        // A far line is blurred: a part of the step from carpet to white is enough, if it is not
+        // noise, of which the smoothed difference has about half the deviation.
+        let least = (0.15 * (model.white_luma - model.green_luma)).max(2.3 * model.deviation).max(6.0) as i32;
         let luma = |index: usize| i32::from(self.profile[index]);
         let gradient = |index: usize| luma(index + 1) - luma(index - 1);
         let mut rise: Option<(usize, i32)> = None;
@@ -121,6 +118,24 @@ impl LineScan {
                 index = fall;
             }
             index += 1;
+        }
+    }
+
+    /// Reads the luma of two neighbouring columns or rows, smoothed with the weights 1, 2, 1.
+    fn read_profile(&mut self, look: &Look<'_>, axis: ScanAxis, at: usize, start: usize, end: usize) {
+        self.profile.clear();
+        let mean = |along: usize| {
+            let (one, other) = match axis {
+                ScanAxis::Column => (look.image.luma(at, along), look.image.luma(at + 1, along)),
+                ScanAxis::Row => (look.image.luma(along, at), look.image.luma(along, at + 1)),
+            };
+            u16::from(one) + u16::from(other)
+        };
+        let mut three = [mean(start.saturating_sub(1)), mean(start), 0];
+        for along in start..end {
+            three[2] = mean(along + 1);
+            self.profile.push(((three[0] + 2 * three[1] + three[2]) / 8) as u8);
+            three = [three[1], three[2], 0];
         }
     }
 

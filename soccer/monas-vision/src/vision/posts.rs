@@ -5,16 +5,19 @@ use super::border::BorderScan;
 use crate::colour::ColourClass;
 use crate::seen::{GoalPaint, GoalPost, PixelBox, PostSide, Sight};
 
-/// Rows that are scanned for posts, and cells between them.
+/// The number of rows that are scanned for posts.
 const ROWS: usize = 5;
-const SPACING: usize = 3;
 
 /// Least height of a post that is visible above the ground, m.
 const LEAST_HEIGHT: f64 = 0.3;
+/// Least height of a white post whose upper end is in the image, m: robots are white and lower.
+const LEAST_WHITE: f64 = 0.62;
 
 /// The search for goal posts.
 ///
-/// Posts are higher than the camera, so each crosses the horizon, or leaves the image at its top.
+/// Coloured posts are higher than the camera, so each crosses the horizon, or leaves the image at
+/// its top. What is behind a white post above the field may be white too, so white posts are
+/// searched where they cross the border of the field.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct PostScan {
     /// In each column, whether most of the scanned rows have the colour of a post.
@@ -29,12 +32,12 @@ impl PostScan {
         };
         for &(paint, class) in paints {
             let first = posts.len();
-            self.mark(look, class);
+            self.mark(look, border, class);
             let mut column = 0;
             while column < self.columns.len() {
                 let end = self.end_of_run(column);
                 if end > column
-                    && let Some(sight) = post(look, border, class, column, end)
+                    && let Some(sight) = post(look, border, paint, class, column, end)
                 {
                     posts.push(GoalPost { sight, paint, side: PostSide::Unknown });
                 }
@@ -47,12 +50,12 @@ impl PostScan {
         posts.sort_unstable_by(|a, b| a.sight.area.left.total_cmp(&b.sight.area.left));
     }
 
-    fn mark(&mut self, look: &Look<'_>, class: ColourClass) {
+    fn mark(&mut self, look: &Look<'_>, border: &BorderScan, class: ColourClass) {
         self.columns.clear();
         self.columns.extend((0..look.map.columns).map(|column| {
-            let top = scan_row(look, column);
-            let found = (0..ROWS).filter(|row| look.map.at(column, top + row * SPACING) == class).count();
-            2 * found > ROWS
+            let found =
+                scan_rows(look, border, class, column).filter(|&row| look.map.at(column, row) == class);
+            2 * found.count() > ROWS
         }));
     }
 
@@ -67,15 +70,28 @@ impl PostScan {
     }
 }
 
-/// The first of the scanned rows: they end at the horizon, or begin at the top of the image.
-fn scan_row(look: &Look<'_>, column: usize) -> usize {
-    (look.map.horizon(column) + SPACING).saturating_sub((ROWS - 1) * SPACING)
+/// The rows that are scanned: around the horizon, or from the border of the field downwards; those
+/// at the top of the image if both are above it.
+fn scan_rows(
+    look: &Look<'_>,
+    border: &BorderScan,
+    class: ColourClass,
+    column: usize,
+) -> impl Iterator<Item = usize> {
+    /// Cells between rows.
+    const SPACING: usize = 3;
+    let (first, spacing) = match class {
+        ColourClass::White => (border.row(column) as usize + 1, 1),
+        _ => ((look.map.horizon(column) + SPACING).saturating_sub((ROWS - 1) * SPACING), SPACING),
+    };
+    (0..ROWS).map(move |row| first.saturating_add(row * spacing))
 }
 
 /// The post in a run of columns, if it is one.
 fn post(
     look: &Look<'_>,
     border: &BorderScan,
+    paint: GoalPaint,
     class: ColourClass,
     left: usize,
     right: usize,
@@ -87,7 +103,7 @@ fn post(
         let own = [middle - third.min(middle), middle, middle + third];
         2 * own.iter().filter(|&&column| map.at(column, row) == class).count() > 3
     };
-    let start = scan_row(look, middle) + ROWS / 2 * SPACING;
+    let start = scan_rows(look, border, class, middle).nth(ROWS / 2)?;
     let foot = last_row(start, map.rows, &has_colour);
     let top = (0..start).rev().take_while(|&row| has_colour(row)).last().unwrap_or(start);
     let width = (right - left) as f64 * step;
@@ -123,11 +139,20 @@ fn post(
         }
     };
     let height = (foot + 1 - top) as f64 * step / expected * diameter;
-    if top > 1 && !is_cut && height < LEAST_HEIGHT {
+    let is_high = match (paint, top > 1) {
+        // Without its foot or its height, white may be a line or a robot.
+        (GoalPaint::White, true) => !is_cut && height > LEAST_WHITE,
+        (GoalPaint::White, false) => !is_cut && height > LEAST_HEIGHT,
+        (_, true) => is_cut || height > LEAST_HEIGHT,
+        (_, false) => true,
+    };
+    if !is_high {
         return None;
     }
-    // Beside a post there is something else, unlike in front of a wall.
-    if !stands_alone(look, class, left, right, top, start) {
+    // Beside a post there is something else, unlike in front of a wall; above the field this may be
+    // white as well.
+    let from = if paint == GoalPaint::White { border.row(middle).max(0.0) as usize } else { top };
+    if !stands_alone(look, class, left, right, from, start.max(foot)) {
         return None;
     }
     let area =

@@ -9,7 +9,7 @@ use crate::{GoalPost, Seen};
 /// Least height of what may be a robot, m: higher than a ball.
 const LEAST_HEIGHT: f64 = 0.22;
 /// Least and greatest width, m.
-const LEAST_WIDTH: f64 = 0.12;
+const LEAST_WIDTH: f64 = 0.085;
 const MOST_WIDTH: f64 = 0.9;
 /// Depth of a robot: its middle is behind the foot that is visible, m.
 const HALF_DEPTH: f64 = 0.08;
@@ -72,9 +72,13 @@ impl RobotScan {
         if width < LEAST_WIDTH || (width > MOST_WIDTH && !is_cut) {
             return None;
         }
-        // Most of the body is not carpet; a line that runs away is not.
-        let high = (foot as f32 - (0.3 * scale) as f32).max(0.0);
-        if map.shares(left as f32, high, right as f32, foot as f32).green > 0.35 {
+        // Neither legs nor chest show the carpet; a line that runs away gets narrower.
+        let row = |height: f64| (foot as f64 - height * scale).max(0.0) as f32;
+        let legs = map.shares(left as f32, row(0.3), right as f32, foot as f32);
+        let middle = (left + right) as f64 / 2.0;
+        let side = |by: f64| (middle + by * scale) as f32;
+        let chest = map.shares(side(-0.07), row(0.42), side(0.07), row(0.28));
+        if legs.green > 0.35 || chest.green > 0.25 {
             return None;
         }
         let near = look.camera.point_at_height(centre, bottom, 0.0)?;
