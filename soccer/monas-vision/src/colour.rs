@@ -105,7 +105,7 @@ impl ColourModel {
         {
             return class;
         }
-        let white_from = self.green_luma + 0.42 * (self.white_luma - self.green_luma);
+        let white_from = self.green_luma + 0.33 * (self.white_luma - self.green_luma);
         let is_pale = saturation < 0.20 || (along < 0.42 && saturation < 0.30);
         match luma {
             _ if luma >= white_from && is_pale => ColourClass::White,

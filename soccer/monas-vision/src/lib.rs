@@ -46,6 +46,7 @@ mod colour;
 mod error;
 mod image;
 mod objects;
+mod overlay;
 pub mod render;
 mod seen;
 mod vision;
@@ -55,6 +56,7 @@ pub use colour::{Calibration, ColourClass, ColourModel, ColourTable};
 pub use error::{Error, ErrorKind};
 pub use image::{Image, rgb_of_yuv, yuv_of_rgb, yuv422_of_rgb};
 pub use objects::{BallPattern, FieldObjects};
+pub use overlay::overlay;
 pub use seen::{
     GoalPaint, GoalPost, Jersey, LinePoint, LineSegment, PixelBox, PostSide, Seen, SeenRobot, Sight,
 };

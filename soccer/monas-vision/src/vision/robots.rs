@@ -41,6 +41,7 @@ impl RobotScan {
             }
             start = end.max(start + 1);
         }
+        drop_arms(look, &mut seen.robots);
     }
 
     /// The index after a group of neighbours whose feet are about as far away.
@@ -64,6 +65,10 @@ impl RobotScan {
         let (map, step) = (look.map, look.map.step as f64);
         let (left, right) = (start * SPACING, (end * SPACING).min(map.columns));
         let foot = self.feet[start..end].iter().copied().flatten().max()?;
+        // Below the image, the distance of a foot is not known.
+        if foot + 2 >= map.rows {
+            return None;
+        }
         let centre = (left + right) as f64 / 2.0 * step;
         let bottom = (foot + 1) as f64 * step;
         let scale = look.camera.scale(centre, bottom, 0.0) / step;
@@ -87,6 +92,32 @@ impl RobotScan {
         let top = (foot as f64 - HEIGHT * scale).max(0.0);
         let area = PixelBox { left: left as f64 * step, top: top * step, right: right as f64 * step, bottom };
         Some(SeenRobot { sight: Sight::new(position, area), jersey: jersey(look, left, right, foot, scale) })
+    }
+}
+
+/// Removes arms beside a robot: their lower ends are above the ground, so they seem to be narrow and
+/// farther away.
+fn drop_arms(look: &Look<'_>, robots: &mut Vec<SeenRobot>) {
+    /// Greatest seeming width of an arm, and gap between it and the legs, m.
+    const ARM: f64 = 0.17;
+    const GAP: f64 = 0.12;
+    let width = |area: &PixelBox| area.right - area.left;
+    let scale = |area: &PixelBox| look.camera.scale((area.left + area.right) / 2.0, area.bottom, 0.0);
+    let is_arm = |one: &SeenRobot, of: &SeenRobot| {
+        let (arm, body) = (&one.sight.area, &of.sight.area);
+        let gap = GAP * scale(body);
+        one.sight.distance > of.sight.distance
+            && width(arm) < ARM * scale(arm)
+            && arm.left < body.right + gap
+            && arm.right > body.left - gap
+    };
+    let mut index = 0;
+    while index < robots.len() {
+        let one = robots[index];
+        match robots.iter().any(|of| is_arm(&one, of)) {
+            true => drop(robots.remove(index)),
+            false => index += 1,
+        }
     }
 }
 
