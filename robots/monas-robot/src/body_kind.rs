@@ -34,15 +34,34 @@ pub struct BodySettings {
     pub kind: String,
     /// Where its interface answers; by default where the kind expects it.
     pub address: Option<String>,
+    /// What its cameras deliver.
+    pub vision: CameraOutput,
     /// What lies between the body and the software.
     pub disturbances: Disturbances,
+}
+
+/// What the cameras of a body deliver.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub enum CameraOutput {
+    /// Finished sightings, without images: a simulated body then senses much faster.
+    #[default]
+    Sightings,
+    /// Images, in which the robot's software finds what they show.
+    Images,
+}
+
+impl CameraOutput {
+    /// All, with the words that configurations use.
+    pub const NAMES: [(&'static str, CameraOutput); 2] =
+        [("sightings", CameraOutput::Sightings), ("images", CameraOutput::Images)];
 }
 
 impl Default for BodySettings {
     /// The simulated world's own body, without disturbances.
     fn default() -> BodySettings {
         let disturbances = Disturbances::default();
-        BodySettings { kind: BodyKind::DEFAULT.to_owned(), address: None, disturbances }
+        let vision = CameraOutput::default();
+        BodySettings { kind: BodyKind::DEFAULT.to_owned(), address: None, vision, disturbances }
     }
 }
 
@@ -51,10 +70,13 @@ impl BodySettings {
     /// disturbances.
     ///
     /// # Errors
-    /// There is no such kind, or the body does not answer.
+    /// There is no such kind, the body does not answer, or it has no images to deliver.
     pub fn open(&self, simulated: Option<Box<dyn Robot>>, seed: u64) -> Result<Box<dyn Robot>, Error> {
         let kind = BodyKind::named(&self.kind)?;
-        let body = (kind.open)(BodySite { address: self.address.clone(), simulated })?;
+        let mut body = (kind.open)(BodySite { address: self.address.clone(), simulated })?;
+        if self.vision == CameraOutput::Images {
+            body.deliver_images()?;
+        }
         Ok(match self.disturbances == Disturbances::default() {
             true => body,
             false => Box::new(WrappedBody::new(body, self.disturbances, seed)),

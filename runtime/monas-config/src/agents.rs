@@ -7,7 +7,7 @@ mod publishers;
 use std::path::Path;
 use std::sync::Arc;
 
-use monas_robot::{BodyKind, BodySettings, Disturbances};
+use monas_robot::{BodyKind, BodySettings, CameraOutput, Disturbances};
 use yase::{Diagnostic, Source};
 
 use super::element::Element;
@@ -148,6 +148,7 @@ impl AgentReader<'_> {
         BodySettings {
             kind,
             address: values.text("address").map(str::to_owned),
+            vision: values.word("vision", &CameraOutput::NAMES).unwrap_or_default(),
             disturbances: Disturbances {
                 delay: values.duration("delay").unwrap_or_default(),
                 noise: values.number("noise").unwrap_or_default(),

@@ -137,11 +137,17 @@ impl BallSearch {
     /// Fits a circle to the edge of a candidate and checks its size, its roundness and what it
     /// encloses. Returns a quality.
     fn check(&mut self, look: &Look<'_>, candidate: BallCandidate) -> Option<(f64, Circle)> {
+        /// Least radius at which the patches of a ball are visible, pixels.
+        const PATCHES: f64 = 4.5;
         let step = look.map.step as f64;
+        let radius = f64::from(candidate.radius) * step;
+        if look.objects.ball == BallPattern::BlackAndWhite && radius < PATCHES {
+            return None;
+        }
         let mut circle = Circle {
             x: (f64::from(candidate.x) + 0.5) * step,
             y: (f64::from(candidate.y) + 0.5) * step,
-            radius: f64::from(candidate.radius) * step,
+            radius,
         };
         for _ in 0..3 {
             self.find_edges(look, &circle);

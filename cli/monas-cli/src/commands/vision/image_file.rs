@@ -83,6 +83,8 @@ impl RgbImage {
 fn check_size(width: usize, height: usize) -> Result<(), String> {
     match width <= LARGEST && height <= LARGEST {
         true => Ok(()),
-        false => Err(format!("an image of {width} x {height} pixels; at most {LARGEST} x {LARGEST} are read")),
+        false => {
+            Err(format!("an image of {width} x {height} pixels; at most {LARGEST} x {LARGEST} are read"))
+        }
     }
 }
