@@ -2,8 +2,8 @@
 //!
 //! A robot's algorithms communicate with its body through messages only. On the level of the plane,
 //! which every body has, the inputs are [`Sensors`], [`Sightings`] or [`Images`], [`Announcement`]
-//! and [`Heard`] (radio messages of the team), the outputs [`Actuators`] and [`Said`]. On the level of the
-//! joints, as far as a body has them, the inputs are [`Joints`], [`Inertial`], [`Contacts`],
+//! and [`Heard`] (radio messages of the team), the outputs [`Actuators`] and [`Said`]. On the level
+//! of the joints, as far as a body has them, the inputs are [`Joints`], [`Inertial`], [`Contacts`],
 //! [`Sonar`] and [`Battery`], the outputs [`JointCommands`] and [`Leds`]. The runtime owns the
 //! body, a value of a type that implements [`Robot`]; it publishes the sensor messages on the
 //! topics of [`topics`] and passes the newest actuators to the body. An activity is therefore

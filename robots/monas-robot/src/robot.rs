@@ -34,7 +34,8 @@ pub struct Percepts {
 }
 
 impl Percepts {
-    /// Clears what is present only when it is new: sightings, images, announcement and radio messages.
+    /// Clears what is present only when it is new: sightings, images, announcement and radio
+    /// messages.
     pub fn clear_news(&mut self) {
         self.sightings = None;
         self.images = None;

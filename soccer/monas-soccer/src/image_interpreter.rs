@@ -6,8 +6,8 @@ use monas_vision::{Camera, FieldObjects, GoalPaint, GoalPost, HeadPose, Jersey, 
 /// Interprets the images of a robot's cameras: what a body with finished sightings delivers,
 /// derived from pixels.
 ///
-/// The pose of a camera follows from the head joints and the inclination of the torso at the time of
-/// the image.
+/// The pose of a camera follows from the head joints and the inclination of the torso at the time
+/// of the image.
 #[derive(Clone, Debug)]
 pub struct ImageInterpreter {
     vision: Vision,

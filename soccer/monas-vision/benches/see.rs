@@ -1,7 +1,7 @@
 //! The time of an image on one core: `cargo bench -p monas-vision --bench see`.
 //!
-//! The images are rendered with ball, robots, goal and lines in view, with noise and blur. `draw` is
-//! the time of rendering one, for comparison.
+//! The images are rendered with ball, robots, goal and lines in view, with noise and blur. `draw`
+//! is the time of rendering one, for comparison.
 #![allow(clippy::unwrap_used, reason = "a bench that cannot go on ends")]
 
 use divan::Bencher;

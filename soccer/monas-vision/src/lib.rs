@@ -2,8 +2,8 @@
 //!
 //! The two central types are [`Camera`], a pinhole with its pose over the ground, and [`Vision`],
 //! which finds in an [`Image`] what is on the field. The pose of the camera follows from the joints
-//! of the head at the time of the image ([`HeadPose`]); a pixel and the height of what it shows then
-//! give its place on the ground, and a place gives the size that an object must have.
+//! of the head at the time of the image ([`HeadPose`]); a pixel and the height of what it shows
+//! then give its place on the ground, and a place gives the size that an object must have.
 //!
 //! The steps, in order: the colours are calibrated from the image itself ([`Calibration`]), each
 //! second pixel gets a class from a table ([`ColourTable`]), scan lines find the border of the
@@ -12,8 +12,8 @@
 //! field; robots are higher and wider than anything else on the carpet; line points are bright bars
 //! between carpet as wide as a line.
 //!
-//! Everything is a function of the images: there are no threads, no clocks and no files. After a few
-//! images [`Vision::see`] does not allocate. [`render`] draws images of a field from a known pose,
+//! Everything is a function of the images: there are no threads, no clocks and no files. After a
+//! few images [`Vision::see`] does not allocate. [`render`] draws images of a field from a known pose,
 //! with noise, blur, exposure and changing light, so that recall and errors can be measured.
 //!
 //! ```

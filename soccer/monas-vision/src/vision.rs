@@ -19,8 +19,8 @@ use robots::RobotScan;
 /// Finds ball, goals, lines, border and robots in images.
 ///
 /// It keeps a colour table, which it calibrates from each image, and its memory: after a few images
-/// it no longer allocates. It has no other state, so it may see the images of several cameras of one
-/// robot in turn.
+/// it no longer allocates. It has no other state, so it may see the images of several cameras of
+/// one robot in turn.
 #[derive(Clone, Debug)]
 pub struct Vision {
     objects: FieldObjects,

@@ -216,7 +216,7 @@ fn distance_from(a: [f64; 2], b: [f64; 2], point: [f64; 2]) -> f64 {
     ((point[0] - a[0]) * y - (point[1] - a[1]) * x).abs() / length
 }
 
-/// The point in the middle of a bright bar, if it is as wide as a line and has carpet on both sides.
+/// The point in the middle of a bright bar, if it is as wide as a line and between carpet.
 fn line_point(
     look: &Look<'_>,
     axis: ScanAxis,

@@ -95,8 +95,8 @@ impl RobotScan {
     }
 }
 
-/// Removes arms beside a robot: their lower ends are above the ground, so they seem to be narrow and
-/// farther away.
+/// Removes arms beside a robot: their lower ends are above the ground, so they seem to be narrow
+/// and farther away.
 fn drop_arms(look: &Look<'_>, robots: &mut Vec<SeenRobot>) {
     /// Greatest seeming width of an arm, and gap between it and the legs, m.
     const ARM: f64 = 0.17;
