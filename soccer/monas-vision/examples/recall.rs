@@ -7,7 +7,12 @@ use monas_vision::FieldObjects;
 #[path = "../tests/measure/mod.rs"]
 mod measure;
 
-use measure::{CONDITIONS, HEADER, Measures, Sequence};
+use measure::{CONDITIONS, Measures, Sequence};
+
+/// The columns of a line of [`Measures`].
+const HEADER: &str = "\
+of each kind: number shown, recall %, false ones, error of distance % (mean, of 9 in 10), of direction in degrees
+               ball                              | posts                             | robots                            | lines found %, false % | border %";
 
 fn main() {
     let number = |at: usize, default: u32| {

@@ -69,7 +69,7 @@ impl<'a> Image<'a> {
 /// Checks that an image can have this size.
 pub(crate) fn check_size(width: usize, height: usize) -> Result<(), Error> {
     let is_side = |side: usize| (SMALLEST..=LARGEST).contains(&side);
-    if width % 2 == 0 && is_side(width) && is_side(height) {
+    if width.is_multiple_of(2) && is_side(width) && is_side(height) {
         return Ok(());
     }
     let message = format!(

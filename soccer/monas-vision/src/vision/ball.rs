@@ -160,6 +160,10 @@ impl BallSearch {
         if !(0.68 - slack..=1.40 + slack).contains(&ratio) {
             return None;
         }
+        // Most of it is in the image, or its patches do not count.
+        if look.objects.ball == BallPattern::BlackAndWhite && look.rays_within(&circle) < 0.7 * RAYS as f64 {
+            return None;
+        }
         self.find_edges(look, &circle);
         let tolerance = 0.16 * circle.radius + 0.9;
         let is_on = |&(x, y): &(f64, f64)| {
@@ -308,7 +312,7 @@ impl Look<'_> {
                 orange += u32::from(is_orange(class));
                 green += u32::from(class == ColourClass::Green);
                 white += u32::from(class == ColourClass::White);
-                dark += u32::from(f32::from(luma) < 0.52 * limit && class != ColourClass::Green);
+                dark += u32::from(f32::from(luma) < 0.45 * limit && class != ColourClass::Green);
             }
         }
         let share = |part: u32| f64::from(part) / f64::from(count.max(1));
@@ -316,7 +320,7 @@ impl Look<'_> {
             BallPattern::Orange => (share(orange) > 0.7).then(|| share(orange)),
             BallPattern::BlackAndWhite => {
                 let contrast = f64::from(darkest) / f64::from(brightest.max(1));
-                let is_patched = share(dark) > 0.04 && share(dark) < 0.75 && contrast < 0.62;
+                let is_patched = share(dark) > 0.04 && share(dark) < 0.75 && contrast < 0.48;
                 let is_pale = share(white) > 0.2 && share(green) < 0.2;
                 (is_patched && is_pale && sum > 0).then(|| share(white).min(0.6) + share(dark).min(0.3))
             }

@@ -158,10 +158,6 @@ impl fmt::Display for Measures {
     }
 }
 
-/// The columns of a line of [`Measures`].
-pub(crate) const HEADER: &str = "  object: number shown, recall %, false ones, error of distance % (mean, 9 of 10), of direction in degrees
-  ball                              | posts                             | robots                            | lines found, false % | border %";
-
 /// One sequence: 640 by 480 pixels unless `width` is less.
 pub(crate) struct Sequence {
     pub(crate) objects: FieldObjects,
