@@ -13,8 +13,8 @@
 //! between carpet as wide as a line.
 //!
 //! Everything is a function of the images: there are no threads, no clocks and no files. After a
-//! few images [`Vision::see`] does not allocate. [`render`] draws images of a field from a known pose,
-//! with noise, blur, exposure and changing light, so that recall and errors can be measured.
+//! few images [`Vision::see`] does not allocate. [`render`] draws images of a field from a known
+//! pose, with noise, blur, exposure and changing light, so that recall and errors can be measured.
 //!
 //! ```
 //! use monas_vision::render::{Light, Renderer, Scene};
