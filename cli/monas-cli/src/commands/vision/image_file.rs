@@ -57,7 +57,9 @@ impl RgbImage {
             .set_max_width(LARGEST)
             .set_max_height(LARGEST);
         let mut decoder = JpegDecoder::new_with_options(ZCursor::new(content), options);
-        let bytes = decoder.decode().map_err(|error| format!("not a readable JPEG: {}", format!("{error:?}").trim()))?;
+        let bytes = decoder
+            .decode()
+            .map_err(|error| format!("not a readable JPEG: {}", format!("{error:?}").trim()))?;
         let (width, height) = decoder.dimensions().ok_or("a JPEG without a size")?;
         match bytes.len() == 3 * width * height {
             true => Ok(RgbImage { width, height, bytes }),
