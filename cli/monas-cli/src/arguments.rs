@@ -29,6 +29,8 @@ use crate::commands::tape::TapeCommand;
 use crate::commands::top::TopArguments;
 #[cfg(unix)]
 use crate::commands::topic::TopicArguments;
+#[cfg(feature = "soccer")]
+use crate::commands::vision::VisionArguments;
 use crate::commands::why::WhyArguments;
 use crate::terminal::GlobalArguments;
 
@@ -159,6 +161,14 @@ pub(crate) enum Command {
     #[cfg(feature = "soccer")]
     #[command(after_help = "Example: monas eval --seeds 4")]
     Eval(EvalArguments),
+    /// Find ball, goals, lines, field border and robots in images, and draw them over each.
+    ///
+    /// Prints what was seen, with distance and bearing from the pose of the camera, and writes each
+    /// image with what was found as `NAME.seen.png`. The colours are calibrated from each image
+    /// itself.
+    #[cfg(feature = "soccer")]
+    #[command(after_help = "Example: monas vision --pitch 8 --view 60.9 frame.jpg")]
+    Vision(VisionArguments),
     /// Explain the code of a diagnostic: what it means, an example, and the remedy.
     #[command(after_help = "Example: monas explain E0205")]
     Explain(ExplainArguments),

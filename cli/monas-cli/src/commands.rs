@@ -26,4 +26,6 @@ pub(crate) mod tape;
 pub(crate) mod top;
 #[cfg(unix)]
 pub(crate) mod topic;
+#[cfg(feature = "soccer")]
+pub(crate) mod vision;
 pub(crate) mod why;

@@ -74,6 +74,8 @@ fn execute(command: Command, console: &mut CommandOutput<'_>) -> Result<Exit, Co
         Command::Referee(arguments) => commands::referee::execute(&arguments, console),
         #[cfg(feature = "soccer")]
         Command::Eval(arguments) => commands::eval::execute(&arguments, console),
+        #[cfg(feature = "soccer")]
+        Command::Vision(arguments) => commands::vision::execute(&arguments, console),
         Command::Explain(arguments) => commands::explain::execute(&arguments, console),
         Command::Man { folder } => manual_pages(&folder),
         Command::Completions { shell } => completions(shell, console).map_err(CommandFailure::from),

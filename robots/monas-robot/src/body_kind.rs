@@ -78,8 +78,26 @@ pub struct BodySettings {
     pub address: Option<String>,
     /// The options of its kind that are given.
     pub options: BTreeMap<String, String>,
+    /// What its cameras deliver.
+    pub vision: CameraOutput,
     /// What lies between the body and the software.
     pub disturbances: Disturbances,
+}
+
+/// What the cameras of a body deliver.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub enum CameraOutput {
+    /// Finished sightings, without images: a simulated body then senses much faster.
+    #[default]
+    Sightings,
+    /// Images, in which the robot's software finds what they show.
+    Images,
+}
+
+impl CameraOutput {
+    /// All, with the words that configurations use.
+    pub const NAMES: [(&'static str, CameraOutput); 2] =
+        [("sightings", CameraOutput::Sightings), ("images", CameraOutput::Images)];
 }
 
 impl Default for BodySettings {
@@ -87,7 +105,7 @@ impl Default for BodySettings {
     fn default() -> BodySettings {
         let disturbances = Disturbances::default();
         let (kind, options) = (BodyKind::DEFAULT.to_owned(), BTreeMap::new());
-        BodySettings { kind, address: None, options, disturbances }
+        BodySettings { kind, address: None, options, vision: CameraOutput::default(), disturbances }
     }
 }
 
@@ -120,11 +138,14 @@ impl BodySettings {
     /// disturbances.
     ///
     /// # Errors
-    /// There is no such kind, or the body does not answer.
+    /// There is no such kind, the body does not answer, or it has no images to deliver.
     pub fn open(&self, simulated: Option<Box<dyn Robot>>, seed: u64) -> Result<Box<dyn Robot>, Error> {
         let kind = BodyKind::named(&self.kind)?;
         let (address, options) = (self.address.clone(), self.options.clone());
-        let body = (kind.open)(BodySite { address, options, simulated })?;
+        let mut body = (kind.open)(BodySite { address, options, simulated })?;
+        if self.vision == CameraOutput::Images {
+            body.deliver_images()?;
+        }
         Ok(match self.disturbances == Disturbances::default() {
             true => body,
             false => Box::new(WrappedBody::new(body, self.disturbances, seed)),

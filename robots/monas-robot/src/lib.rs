@@ -1,9 +1,9 @@
 //! Bodies: sensor messages, command messages, and the trait that connects them.
 //!
 //! A robot's algorithms communicate with its body through messages only. On the level of the plane,
-//! which every body has, the inputs are [`Sensors`], [`Sightings`], [`Announcement`] and [`Heard`]
-//! (radio messages of the team), the outputs [`Actuators`] and [`Said`]. On the level of the
-//! joints, as far as a body has them, the inputs are [`Joints`], [`Inertial`], [`Contacts`],
+//! which every body has, the inputs are [`Sensors`], [`Sightings`] or [`Images`], [`Announcement`]
+//! and [`Heard`] (radio messages of the team), the outputs [`Actuators`] and [`Said`]. On the level
+//! of the joints, as far as a body has them, the inputs are [`Joints`], [`Inertial`], [`Contacts`],
 //! [`Sonar`] and [`Battery`], the outputs [`JointCommands`] and [`Leds`]. The runtime owns the
 //! body, a value of a type that implements [`Robot`]; it publishes the sensor messages on the
 //! topics of [`topics`] and passes the newest actuators to the body. An activity is therefore
@@ -51,7 +51,7 @@ mod wrapped_body;
 narukom::include_messages!("monas.robot");
 
 pub use anatomy::{Anatomy, Camera, Joint, Limits};
-pub use body_kind::{BodyKind, BodyOption, BodySettings, BodySite, OpenBody, OptionKind};
+pub use body_kind::{BodyKind, BodyOption, BodySettings, BodySite, CameraOutput, OpenBody, OptionKind};
 pub use joint_targets::JointTargets;
 pub use robot::{Error, ErrorKind, Percepts, Robot};
 pub use wrapped_body::{Disturbances, WrappedBody};

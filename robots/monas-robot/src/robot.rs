@@ -3,8 +3,8 @@
 use narukom::Timestamp;
 
 use crate::{
-    Actuators, Anatomy, Announcement, Battery, Contacts, Heard, Inertial, JointCommands, Joints, Leds,
-    Sensors, Sightings, Sonar,
+    Actuators, Anatomy, Announcement, Battery, Contacts, Heard, Images, Inertial, JointCommands, Joints,
+    Leds, Sensors, Sightings, Sonar,
 };
 
 /// Percepts of a body since the last call. Reused from cycle to cycle.
@@ -14,6 +14,8 @@ pub struct Percepts {
     pub sensors: Sensors,
     /// Sightings, if an image was taken.
     pub sightings: Option<Sightings>,
+    /// Images, if they were taken by a body that delivers them in place of sightings.
+    pub images: Option<Images>,
     /// The referee's announcement, if it has changed.
     pub announcement: Option<Announcement>,
     /// Radio messages of team mates, in the order of reception.
@@ -32,9 +34,11 @@ pub struct Percepts {
 }
 
 impl Percepts {
-    /// Clears what is present only when it is new: sightings, announcement and radio messages.
+    /// Clears what is present only when it is new: sightings, images, announcement and radio
+    /// messages.
     pub fn clear_news(&mut self) {
         self.sightings = None;
+        self.images = None;
         self.announcement = None;
         self.heard.clear();
     }
@@ -74,6 +78,15 @@ pub trait Robot: Send {
     fn light(&mut self, _now: Timestamp, _leds: &Leds) -> Result<(), Error> {
         let model = &self.anatomy().model;
         Err(Error::new(ErrorKind::Hardware, format!("the {model} has no LEDs to set")))
+    }
+
+    /// Delivers images in place of sightings from now on, see [`Images`].
+    ///
+    /// # Errors
+    /// The body has no images to deliver (the default implementation).
+    fn deliver_images(&mut self) -> Result<(), Error> {
+        let model = &self.anatomy().model;
+        Err(Error::new(ErrorKind::Configuration, format!("the {model} delivers no images")))
     }
 
     /// Makes the body safe permanently: in any state it comes to rest, sits down, switches off the

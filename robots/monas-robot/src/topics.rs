@@ -1,8 +1,8 @@
 //! The topics between a body and the agents of its host.
 
 use crate::{
-    Actuators, Announcement, Battery, Contacts, Heard, Inertial, JointCommands, Joints, Leds, Said, Sensors,
-    Sightings, Sonar,
+    Actuators, Announcement, Battery, Contacts, Heard, Images, Inertial, JointCommands, Joints, Leds, Said,
+    Sensors, Sightings, Sonar,
 };
 
 narukom::topic! {
@@ -10,6 +10,8 @@ narukom::topic! {
     pub SENSORS: narukom::Data<Sensors, 64> = "body/sensors";
     /// Sightings of every image.
     pub SIGHTINGS: narukom::State<Sightings> = "body/sightings";
+    /// Images, of a body that delivers them in place of sightings.
+    pub IMAGES: narukom::State<Images> = "body/images";
     /// Announcements of the referee.
     pub ANNOUNCEMENT: narukom::State<Announcement> = "body/referee";
     /// Radio messages to the team.

@@ -16,7 +16,7 @@ pub struct Disturbances {
     pub delay: Duration,
     /// Standard deviation of what is added to measured angles and bearings, rad.
     pub noise: f64,
-    /// The probability with which a set of sightings or a radio message is lost.
+    /// The probability with which a set of sightings or images or a radio message is lost.
     pub loss: f64,
 }
 
@@ -93,6 +93,7 @@ impl WrappedBody {
         if self.disturbances.loss > 0.0 {
             let loss = self.disturbances.loss;
             percepts.sightings = percepts.sightings.take().filter(|_| self.uniform() >= loss);
+            percepts.images = percepts.images.take().filter(|_| self.uniform() >= loss);
             percepts.heard.retain(|_| self.uniform() >= loss);
         }
         if self.disturbances.noise > 0.0 {
@@ -150,6 +151,10 @@ impl Robot for WrappedBody {
 
     fn light(&mut self, now: Timestamp, leds: &Leds) -> Result<(), Error> {
         self.body.light(now, leds)
+    }
+
+    fn deliver_images(&mut self) -> Result<(), Error> {
+        self.body.deliver_images()
     }
 
     /// Takes effect at once, and for good.

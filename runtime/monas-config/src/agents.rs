@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 
-use monas_robot::{BodyKind, BodyOption, BodySettings, Disturbances, OptionKind};
+use monas_robot::{BodyKind, BodyOption, BodySettings, CameraOutput, Disturbances, OptionKind};
 use yase::{Diagnostic, Source};
 
 use super::element::{Attribute, Element};
@@ -152,6 +152,7 @@ impl AgentReader<'_> {
             kind,
             options,
             address: values.text("address").map(str::to_owned),
+            vision: values.word("vision", &CameraOutput::NAMES).unwrap_or_default(),
             disturbances: Disturbances {
                 delay: values.duration("delay").unwrap_or_default(),
                 noise: values.number("noise").unwrap_or_default(),

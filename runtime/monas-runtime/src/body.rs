@@ -5,8 +5,8 @@ mod joint_bridge;
 
 use std::time::Duration;
 
-use monas_robot::topics::{ACTUATORS, ANNOUNCEMENT, HEARD, SAID, SENSORS, SIGHTINGS};
-use monas_robot::{Announcement, Heard, Percepts, Robot, Sensors, Sightings};
+use monas_robot::topics::{ACTUATORS, ANNOUNCEMENT, HEARD, IMAGES, SAID, SENSORS, SIGHTINGS};
+use monas_robot::{Announcement, Heard, Images, Percepts, Robot, Sensors, Sightings};
 use narukom::{Blackboard, Hub, Publisher, PublisherId, Retention, Sample, Timestamp, Topic};
 
 use monas_core::error::{Error, ErrorKind};
@@ -22,6 +22,7 @@ pub(crate) struct BodyBridge {
     percepts: Percepts,
     sensors: Publisher<Sensors>,
     sightings: Publisher<Sightings>,
+    images: Publisher<Images>,
     announcement: Publisher<Announcement>,
     heard: Publisher<Heard>,
     /// The level of the joints, for a body that has them.
@@ -49,6 +50,7 @@ impl BodyBridge {
             percepts: Percepts::default(),
             sensors: hub.publisher(SENSORS, BodyBridge::PUBLISHER).map_err(Error::hub)?,
             sightings: hub.publisher(SIGHTINGS, BodyBridge::PUBLISHER).map_err(Error::hub)?,
+            images: hub.publisher(IMAGES, BodyBridge::PUBLISHER).map_err(Error::hub)?,
             announcement: hub.publisher(ANNOUNCEMENT, BodyBridge::PUBLISHER).map_err(Error::hub)?,
             heard: hub.publisher(HEARD, BodyBridge::PUBLISHER).map_err(Error::hub)?,
             commands: hub.blackboard(BodyBridge::PUBLISHER),
@@ -70,6 +72,9 @@ impl BodyBridge {
         self.sensors.publish(self.percepts.sensors, now);
         if let Some(sightings) = self.percepts.sightings.take() {
             self.sightings.publish(sightings, now);
+        }
+        if let Some(images) = self.percepts.images.take() {
+            self.images.publish(images, now);
         }
         if let Some(announcement) = self.percepts.announcement.take() {
             self.announcement.publish(announcement, now);

@@ -6,6 +6,7 @@
 
 mod announce;
 mod body;
+mod image_camera;
 mod radio_channel;
 mod skill;
 

@@ -409,6 +409,11 @@ impl SimulatedWorld {
         self.decisions = decisions;
     }
 
+    /// Roll and pitch of the torso of a robot, rad, without noise.
+    pub(crate) fn torso_tilt(&self, robot: usize) -> (f64, f64) {
+        self.bodies.get(robot).map_or((0.0, 0.0), |body| body.tilt)
+    }
+
     fn carry_out(&mut self, event: &EventKind) {
         match *event {
             EventKind::StateChanged { to: GameState::Ready | GameState::Initial, .. } => {

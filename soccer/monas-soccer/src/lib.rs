@@ -75,6 +75,7 @@
 pub mod activities;
 pub mod convert;
 pub mod functionality;
+pub mod image_interpreter;
 pub mod perception;
 pub mod topics;
 

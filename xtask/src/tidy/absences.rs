@@ -23,7 +23,7 @@ struct Absence {
     because: &'static str,
 }
 
-const ABSENCES: [Absence; 27] = [
+const ABSENCES: [Absence; 28] = [
     Absence {
         crate_name: "narukom",
         names: &[&OUTSIDE, &CHANCE, &PRINTING, &["Agent", "Activity", "Statechart"]],
@@ -141,6 +141,12 @@ const ABSENCES: [Absence; 27] = [
         ],
         except: &[],
         because: "the runtime runs any agent on any body",
+    },
+    Absence {
+        crate_name: "monas-vision",
+        names: &[&OUTSIDE, &CHANCE, &PRINTING, &["narukom", "Activity", "monas_robot"]],
+        except: &[],
+        because: "what an image shows is a function of the image and the pose of its camera",
     },
     Absence {
         crate_name: "monas-sim",

@@ -6,12 +6,13 @@ use super::TidyFinding;
 use super::workspace::{Crate, Dependency, Workspace};
 
 /// Every crate of the product and its layer.
-const LAYERS: [(&str, u8); 34] = [
+const LAYERS: [(&str, u8); 35] = [
     ("monas-diagnostics", 0),
     ("monas-files", 0),
     ("narukom", 0),
     ("narukom-build", 0),
     ("yase-expression", 0),
+    ("monas-vision", 1),
     ("yase", 1),
     ("monas-link", 1),
     ("monas-robot", 1),

@@ -6,6 +6,7 @@ use super::{AttributeRule, ElementRule, Grammar, Identity, Kind};
 use monas_core::agent::FailurePolicy;
 use monas_core::frequency::Frequency;
 use monas_core::monitors::ViolationResponse;
+use monas_robot::CameraOutput;
 
 impl Grammar {
     /// Agents, providers, links and modules, inside `<agents>` or not: the setup of one host.
@@ -136,6 +137,12 @@ fn body() -> ElementRule {
                 Kind::Text,
                 "where its interface answers; by default the usual one of the kind",
             ),
+            attribute(
+                "vision",
+                Kind::Word(CameraOutput::NAMES.map(|(name, _)| name).to_vec()),
+                "what its cameras deliver: finished sightings, or images",
+            )
+            .or("sightings"),
             attribute("delay", Kind::Duration { least: Duration::ZERO }, "delay of commands, for trials")
                 .or("0s"),
             attribute(

@@ -8,6 +8,7 @@ use monas_robot::{
 };
 use narukom::Timestamp;
 
+use super::image_camera::ImageCamera;
 use super::skill::SkillTrack;
 use super::{SharedField, announce};
 use crate::{BodyPhase, Command, Motion, Physics, Senses, Side, Sighting, Velocity};
@@ -29,6 +30,8 @@ pub struct FieldBody {
     announced: Option<(Timestamp, Announcement)>,
     /// The body sits or is about to; commands are ignored.
     rests: bool,
+    /// The cameras, if they deliver images in place of sightings.
+    cameras: Option<ImageCamera>,
 }
 
 impl FieldBody {
@@ -36,7 +39,17 @@ impl FieldBody {
         let longest_message = pitch.lock().air.longest();
         let anatomy = pitch.with_world(|world| anatomy(world.physics(), longest_message));
         let (senses, skill, command) = Default::default();
-        FieldBody { pitch, robot, anatomy, senses, skill, command, announced: None, rests: false }
+        FieldBody {
+            pitch,
+            robot,
+            anatomy,
+            senses,
+            skill,
+            command,
+            announced: None,
+            rests: false,
+            cameras: None,
+        }
     }
 
     /// The announcement, if it has changed or is due for repetition.
@@ -125,7 +138,14 @@ impl Robot for FieldBody {
             self.drive()?;
         }
         self.feel(now, on_field, &mut percepts.sensors);
-        percepts.sightings = self.see(now);
+        match &mut self.cameras {
+            None => percepts.sightings = self.see(now),
+            Some(cameras) if self.senses.new_picture => {
+                let images = self.pitch.with_world(|world| cameras.take(world, self.robot, now));
+                percepts.images = Some(images?);
+            }
+            Some(_) => {}
+        }
         percepts.announcement = self.announcement(now);
         Ok(())
     }
@@ -137,6 +157,11 @@ impl Robot for FieldBody {
         self.command = *actuators;
         self.skill.command(actuators);
         self.drive()
+    }
+
+    fn deliver_images(&mut self) -> Result<(), Error> {
+        self.cameras = Some(ImageCamera::default());
+        Ok(())
     }
 
     /// The body sits down as soon as it stands; a lying body stays down.

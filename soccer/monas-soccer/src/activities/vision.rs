@@ -7,11 +7,16 @@ use monas_robot::topics as body;
 use nalgebra::Isometry2;
 use narukom::Timestamp;
 
+use crate::image_interpreter::ImageInterpreter;
 use crate::perception::{Perception, PerceptionModel};
 use crate::{GameState, convert, topics};
 
 /// Filters what the body sees: the ball with its velocity, the robot's pose from goal posts, the
 /// other robots.
+///
+/// It reads finished sightings, or images from a body that delivers these. An image is interpreted
+/// with the camera pose from the head joints and the torso's inclination at the time it was taken,
+/// which the history of sensor readings has.
 ///
 /// Sightings are related to the odometry at the time of the image, which Sensors keeps, and
 /// propagated to the time of publication. A placement by the referee resets the pose and discards
@@ -24,6 +29,7 @@ use crate::{GameState, convert, topics};
 pub struct Vision {
     model: PerceptionModel,
     perception: Option<Perception>,
+    interpreter: ImageInterpreter,
     calibration: u32,
 }
 
@@ -46,7 +52,7 @@ impl Activity for Vision {
             perception.apply_placement(game, now, odometry);
         }
         perception.feel(blackboard.read(body::SENSORS).map(|sensors| sensors.posture()));
-        see(perception, blackboard);
+        see(perception, &mut self.interpreter, blackboard)?;
         perception.advance(now, &odometry);
         self.publish(blackboard)?;
         Ok(Progress::Done)
@@ -54,7 +60,7 @@ impl Activity for Vision {
 
     fn topics(&self) -> Topics {
         let topics = Topics::declared().reads(body::SENSORS).reads(body::SIGHTINGS).reads(topics::SENSORS);
-        let topics = topics.reads(topics::GAME_STATE).reads(topics::CALIBRATION);
+        let topics = topics.reads(body::IMAGES).reads(topics::GAME_STATE).reads(topics::CALIBRATION);
         topics.publishes(topics::BALL).publishes(topics::POSE).publishes(topics::ROBOTS)
     }
 }
@@ -65,6 +71,7 @@ impl Vision {
         if number != self.calibration {
             self.calibration = number;
             self.perception = None;
+            self.interpreter = ImageInterpreter::default();
         }
     }
 
@@ -81,12 +88,36 @@ impl Vision {
     }
 }
 
-/// Processes the newest image, if it is new, at the time it was taken.
-fn see(perception: &mut Perception, blackboard: &Blackboard) {
-    let image = blackboard.read(body::SIGHTINGS).filter(|image| image.taken_at > perception.taken_at());
-    let (Some(image), Some(game)) = (image, blackboard.read(topics::GAME_STATE)) else { return };
-    let Some(odometry) = odometry_at(blackboard, Timestamp::from_nanos(image.taken_at)) else { return };
-    perception.see(image, game, &odometry);
+/// Processes the newest image, or the newest sightings, if they are new, at the time at which the
+/// image was taken.
+fn see(
+    perception: &mut Perception,
+    interpreter: &mut ImageInterpreter,
+    blackboard: &Blackboard,
+) -> Result<(), BoxError> {
+    let Some(game) = blackboard.read(topics::GAME_STATE) else { return Ok(()) };
+    let odometry = |taken_at| odometry_at(blackboard, Timestamp::from_nanos(taken_at));
+    let is_new = |perception: &Perception, taken_at| taken_at > perception.taken_at();
+    let sightings = blackboard.read(body::SIGHTINGS);
+    if let Some(image) = sightings.filter(|image| is_new(perception, image.taken_at))
+        && let Some(odometry) = odometry(image.taken_at)
+    {
+        perception.see(image, game, &odometry);
+    }
+    let images = blackboard.read(body::IMAGES);
+    if let Some(images) = images.filter(|images| is_new(perception, images.taken_at))
+        && let Some(odometry) = odometry(images.taken_at)
+        && let Some(sensors) = sensors_at(blackboard, images.taken_at)
+    {
+        perception.see(&interpreter.interpret(images, sensors)?, game, &odometry);
+    }
+    Ok(())
+}
+
+/// The sensor readings of a time: the last that were not later.
+fn sensors_at(blackboard: &Blackboard, moment: u64) -> Option<&monas_robot::Sensors> {
+    let felt = blackboard.recent(body::SENSORS, Duration::MAX);
+    felt.filter(|felt| felt.measured_at <= moment).last().map(|felt| felt.message)
 }
 
 /// The odometry at a time: from the history of Sensors and the newer sensor readings.

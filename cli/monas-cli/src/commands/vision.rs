@@ -1,0 +1,183 @@
+//! `monas vision`: what images of files show.
+
+mod image_file;
+
+use std::path::{Path, PathBuf};
+
+use clap::{Args, ValueEnum, ValueHint};
+use monas_vision::{Camera, FieldObjects, GoalPaint, HeadPose, Image, Jersey, PostSide, Seen, Sight, Vision};
+use serde_json::json;
+
+use crate::terminal::table::of_numbers;
+use crate::terminal::{CommandFailure, CommandOutput, Exit, Format, FormatArgument};
+
+use image_file::RgbImage;
+
+/// Arguments of `monas vision`.
+#[derive(Args, Debug)]
+pub(crate) struct VisionArguments {
+    /// Images, in PNG or JPEG.
+    #[arg(required = true, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    files: Vec<PathBuf>,
+    /// Ball and goals to look for.
+    #[arg(long, value_enum, default_value = "today")]
+    objects: ObjectSet,
+    /// Pitch of the camera, degrees, positive downwards.
+    #[arg(long, value_name = "DEGREES", default_value_t = 0.0, allow_negative_numbers = true)]
+    pitch: f64,
+    /// Roll of the camera, degrees, positive to the right.
+    #[arg(long, value_name = "DEGREES", default_value_t = 0.0, allow_negative_numbers = true)]
+    roll: f64,
+    /// Height of the camera above the ground, metres.
+    #[arg(long, value_name = "METRES", default_value_t = 0.5)]
+    height: f64,
+    /// Angle of view from left to right, degrees: 47.8 for a Nao V3, 60.9 for V4 and V5, 54.7 for
+    /// V6.
+    #[arg(long, value_name = "DEGREES", default_value_t = 54.7)]
+    view: f64,
+    /// The folder for the overlays.
+    #[arg(short, long, value_name = "FOLDER", default_value = ".", value_hint = ValueHint::DirPath)]
+    output: PathBuf,
+    #[command(flatten)]
+    format: FormatArgument,
+}
+
+/// Ball and goals of a time.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum ObjectSet {
+    /// An orange ball, a yellow and a blue goal.
+    #[value(name = "2010")]
+    Of2010,
+    /// A black and white ball, white goals.
+    #[value(name = "today")]
+    OfToday,
+}
+
+pub(crate) fn execute(
+    arguments: &VisionArguments,
+    console: &mut CommandOutput<'_>,
+) -> Result<Exit, CommandFailure> {
+    let format = arguments.format.value;
+    for file in &arguments.files {
+        let failed =
+            |message: String| CommandFailure::Failed(format, format!("{}: {message}", file.display()));
+        let rgb = RgbImage::read(file).map_err(failed)?;
+        let mut pixels = Vec::new();
+        let width = monas_vision::yuv422_of_rgb(rgb.width, &rgb.bytes, &mut pixels);
+        let image = Image::new(width, rgb.height, &pixels).map_err(|error| failed(error.to_string()))?;
+        let camera = camera(arguments, &image).map_err(|error| failed(error.to_string()))?;
+        let mut vision = Vision::new(objects(arguments.objects));
+        let seen = vision.see(&image, &camera).map_err(|error| failed(error.to_string()))?;
+        let drawn = overlay_path(file, &arguments.output);
+        let bytes = monas_vision::overlay(&image, seen);
+        let overlay = RgbImage { width, height: rgb.height, bytes };
+        overlay.write(&drawn).map_err(|error| {
+            CommandFailure::Failed(format, format!("cannot write {}: {error}", drawn.display()))
+        })?;
+        report(file, &drawn, seen, format, console)?;
+    }
+    Ok(Exit::Success)
+}
+
+fn objects(set: ObjectSet) -> FieldObjects {
+    match set {
+        ObjectSet::Of2010 => FieldObjects::OF_2010,
+        ObjectSet::OfToday => FieldObjects::OF_TODAY,
+    }
+}
+
+fn camera(arguments: &VisionArguments, image: &Image<'_>) -> Result<Camera, monas_vision::Error> {
+    let pose = HeadPose {
+        height: arguments.height,
+        torso_roll: arguments.roll.to_radians(),
+        pitch: arguments.pitch.to_radians(),
+        ..HeadPose::default()
+    };
+    Camera::new(image.width(), image.height(), arguments.view.to_radians(), &pose.robot_from_camera())
+}
+
+fn overlay_path(file: &Path, folder: &Path) -> PathBuf {
+    let name = file.file_stem().unwrap_or_default().to_string_lossy();
+    folder.join(format!("{name}.seen.png"))
+}
+
+/// A row of the table: what, its kind, and where.
+struct SeenObject<'a> {
+    what: &'static str,
+    kind: &'static str,
+    sight: &'a Sight,
+}
+
+fn objects_of(seen: &Seen) -> Vec<SeenObject<'_>> {
+    let ball = seen.ball.iter().map(|sight| SeenObject { what: "ball", kind: "", sight });
+    let posts = seen.posts.iter().map(|post| SeenObject {
+        what: match post.side {
+            PostSide::Left => "left post",
+            PostSide::Right => "right post",
+            PostSide::Unknown => "post",
+        },
+        kind: match post.paint {
+            GoalPaint::Yellow => "yellow",
+            GoalPaint::Blue => "blue",
+            GoalPaint::White => "white",
+        },
+        sight: &post.sight,
+    });
+    let robots = seen.robots.iter().map(|robot| SeenObject {
+        what: "robot",
+        kind: match robot.jersey {
+            Jersey::Blue => "blue",
+            Jersey::Red => "red",
+            Jersey::Unknown => "",
+        },
+        sight: &robot.sight,
+    });
+    ball.chain(posts).chain(robots).collect()
+}
+
+fn report(
+    file: &Path,
+    drawn: &Path,
+    seen: &Seen,
+    format: Format,
+    console: &mut CommandOutput<'_>,
+) -> Result<(), CommandFailure> {
+    let objects = objects_of(seen);
+    if format == Format::Json {
+        let objects = objects.iter().map(|SeenObject { what, kind, sight }| {
+            let area = &sight.area;
+            json!({
+                "what": what, "kind": kind, "distance": sight.distance, "bearing": sight.bearing,
+                "box": [area.left, area.top, area.right, area.bottom],
+            })
+        });
+        let lines = seen.lines.iter().map(|line| line.ends.map(|end| [end.position.x, end.position.y]));
+        let found = json!({
+            "file": file.display().to_string(),
+            "overlay": drawn.display().to_string(),
+            "objects": objects.collect::<Vec<_>>(),
+            "lines": lines.collect::<Vec<_>>(),
+            "line_points": seen.line_points.len(),
+            "border": seen.border,
+        });
+        return Ok(writeln!(console.out, "{found}")?);
+    }
+    let (points, lines) = (seen.line_points.len(), seen.lines.len());
+    let border = if seen.border.is_empty() { "no field border" } else { "a field border" };
+    writeln!(console.out, "{}: {border}, {lines} lines of {points} points", file.display())?;
+    if !objects.is_empty() {
+        let rows = objects.iter().map(|SeenObject { what, kind, sight }| {
+            let area = &sight.area;
+            [
+                (*what).to_owned(),
+                (*kind).to_owned(),
+                format!("{:.2}", sight.distance),
+                format!("{:.1}", sight.bearing.to_degrees()),
+                format!("{:.0},{:.0} {:.0},{:.0}", area.left, area.top, area.right, area.bottom),
+            ]
+        });
+        writeln!(console.out, "{}", of_numbers(["what", "kind", "metres", "degrees", "pixels"], 2, rows))?;
+    }
+    writeln!(console.remarks(), "written to {}", drawn.display())?;
+    Ok(())
+}

@@ -1,0 +1,192 @@
+//! Goal posts: vertical bars across the horizon with a foot on the field.
+
+use super::Look;
+use super::border::BorderScan;
+use crate::colour::ColourClass;
+use crate::seen::{GoalPaint, GoalPost, PixelBox, PostSide, Sight};
+
+/// The number of rows that are scanned for posts.
+const ROWS: usize = 5;
+
+/// Least height of a post that is visible above the ground, m.
+const LEAST_HEIGHT: f64 = 0.3;
+/// Least height of a white post whose upper end is in the image, m: robots are white and lower.
+const LEAST_WHITE: f64 = 0.62;
+
+/// The search for goal posts.
+///
+/// Coloured posts are higher than the camera, so each crosses the horizon, or leaves the image at
+/// its top. What is behind a white post above the field may be white too, so white posts are
+/// searched where they cross the border of the field.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct PostScan {
+    /// In each column, whether most of the scanned rows have the colour of a post.
+    columns: Vec<bool>,
+}
+
+impl PostScan {
+    pub(crate) fn scan(&mut self, look: &Look<'_>, border: &BorderScan, posts: &mut Vec<GoalPost>) {
+        let paints: &[(GoalPaint, ColourClass)] = match look.objects.has_coloured_goals {
+            true => &[(GoalPaint::Yellow, ColourClass::Yellow), (GoalPaint::Blue, ColourClass::Blue)],
+            false => &[(GoalPaint::White, ColourClass::White)],
+        };
+        for &(paint, class) in paints {
+            let first = posts.len();
+            self.mark(look, border, class);
+            let mut column = 0;
+            while column < self.columns.len() {
+                let end = self.end_of_run(column);
+                if end > column
+                    && let Some(sight) = post(look, border, paint, class, column, end)
+                {
+                    posts.push(GoalPost { sight, paint, side: PostSide::Unknown });
+                }
+                column = end.max(column + 1);
+            }
+            if let [left, right] = &mut posts[first..] {
+                (left.side, right.side) = (PostSide::Left, PostSide::Right);
+            }
+        }
+        posts.sort_unstable_by(|a, b| a.sight.area.left.total_cmp(&b.sight.area.left));
+    }
+
+    fn mark(&mut self, look: &Look<'_>, border: &BorderScan, class: ColourClass) {
+        self.columns.clear();
+        self.columns.extend((0..look.map.columns).map(|column| {
+            let found =
+                scan_rows(look, border, class, column).filter(|&row| look.map.at(column, row) == class);
+            2 * found.count() > ROWS
+        }));
+    }
+
+    /// The column after a run of marked columns, which may have gaps of one column.
+    fn end_of_run(&self, start: usize) -> usize {
+        let is_marked = |column: usize| self.columns.get(column).copied().unwrap_or(false);
+        let mut end = start;
+        while is_marked(end) || (end > start && is_marked(end + 1)) {
+            end += 1;
+        }
+        end
+    }
+}
+
+/// The rows that are scanned: around the horizon, or from the border of the field downwards; those
+/// at the top of the image if both are above it.
+fn scan_rows(
+    look: &Look<'_>,
+    border: &BorderScan,
+    class: ColourClass,
+    column: usize,
+) -> impl Iterator<Item = usize> {
+    /// Cells between rows.
+    const SPACING: usize = 3;
+    let (first, spacing) = match class {
+        ColourClass::White => (border.row(column) as usize + 1, 1),
+        _ => ((look.map.horizon(column) + SPACING).saturating_sub((ROWS - 1) * SPACING), SPACING),
+    };
+    (0..ROWS).map(move |row| first.saturating_add(row * spacing))
+}
+
+/// The post in a run of columns, if it is one.
+fn post(
+    look: &Look<'_>,
+    border: &BorderScan,
+    paint: GoalPaint,
+    class: ColourClass,
+    left: usize,
+    right: usize,
+) -> Option<Sight> {
+    let (map, step) = (look.map, look.map.step as f64);
+    let middle = (left + right) / 2;
+    let third = (right - left) / 3;
+    let has_colour = |row: usize| {
+        let own = [middle - third.min(middle), middle, middle + third];
+        2 * own.iter().filter(|&&column| map.at(column, row) == class).count() > 3
+    };
+    let start = scan_rows(look, border, class, middle).nth(ROWS / 2)?;
+    let foot = last_row(start, map.rows, &has_colour);
+    let top = (0..start).rev().take_while(|&row| has_colour(row)).last().unwrap_or(start);
+    let width = (right - left) as f64 * step;
+    let centre = (left + right) as f64 / 2.0 * step;
+    let bottom = (foot + 1) as f64 * step;
+    let is_cut = foot + 2 >= map.rows;
+    let diameter = 2.0 * look.objects.post_radius;
+    let expected = diameter * look.camera.scale(centre, bottom, 0.0);
+    if expected <= 0.0 {
+        return None;
+    }
+    let position = match is_cut {
+        // Below the image: the distance follows from the width, which cannot be checked then.
+        true => {
+            let ray = look.camera.ray(centre, bottom);
+            let depth = look.camera.focal() * diameter / width;
+            (width >= 1.0).then(|| look.camera.position().xy() + ray.xy() * depth)?
+        }
+        false => {
+            let ratio = width / expected;
+            let slack = 2.0 * step / expected;
+            if !(0.5 - slack..=1.7 + slack).contains(&ratio) {
+                return None;
+            }
+            // The foot is on the field, with carpet below it.
+            let below = map.shares(left as f32, foot as f32 + 1.0, right as f32, foot as f32 + 6.0);
+            if below.green < 0.25 || (foot as f32) + 4.0 < border.row(middle) {
+                return None;
+            }
+            let near = look.camera.point_at_height(centre, bottom, 0.0)?;
+            let away = near - look.camera.position().xy();
+            near + away.normalize() * look.objects.post_radius
+        }
+    };
+    let height = (foot + 1 - top) as f64 * step / expected * diameter;
+    let is_high = match (paint, top > 1) {
+        // Without its foot or its height, white may be a line or a robot.
+        (GoalPaint::White, true) => !is_cut && height > LEAST_WHITE,
+        (GoalPaint::White, false) => !is_cut && height > LEAST_HEIGHT,
+        (_, true) => is_cut || height > LEAST_HEIGHT,
+        (_, false) => true,
+    };
+    if !is_high {
+        return None;
+    }
+    // Beside a post there is something else, unlike in front of a wall; above the field this may be
+    // white as well.
+    let from = if paint == GoalPaint::White { border.row(middle).max(0.0) as usize } else { top };
+    if !stands_alone(look, class, left, right, from, start.max(foot)) {
+        return None;
+    }
+    let area =
+        PixelBox { left: left as f64 * step, top: top as f64 * step, right: right as f64 * step, bottom };
+    Some(Sight::new(position, area))
+}
+
+/// The last row of the colour below a row, with gaps of two rows.
+fn last_row(start: usize, rows: usize, has_colour: &impl Fn(usize) -> bool) -> usize {
+    let (mut last, mut row) = (start, start);
+    while row < rows && row <= last + 3 {
+        if has_colour(row) {
+            last = row;
+        }
+        row += 1;
+    }
+    last
+}
+
+/// Whether the columns beside a bar have another class in most rows.
+fn stands_alone(
+    look: &Look<'_>,
+    class: ColourClass,
+    left: usize,
+    right: usize,
+    top: usize,
+    bottom: usize,
+) -> bool {
+    let away = 2 + (right - left) / 2;
+    let rows = bottom.saturating_sub(top).max(1);
+    let is_free = |column: Option<usize>| {
+        let Some(column) = column.filter(|&column| column < look.map.columns) else { return true };
+        let same = (top..bottom).filter(|&row| look.map.at(column, row) == class).count();
+        2 * same <= rows
+    };
+    is_free(left.checked_sub(away)) && is_free(Some(right + away))
+}

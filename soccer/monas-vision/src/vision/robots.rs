@@ -1,0 +1,194 @@
+//! Other robots: what stands on the carpet and is as high and wide as a robot.
+
+use super::Look;
+use super::border::BorderScan;
+use crate::colour::ColourClass;
+use crate::seen::{Jersey, PixelBox, SeenRobot, Sight};
+use crate::{GoalPost, Seen};
+
+/// Least height of what may be a robot, m: higher than a ball.
+const LEAST_HEIGHT: f64 = 0.22;
+/// Least and greatest width, m.
+const LEAST_WIDTH: f64 = 0.085;
+const MOST_WIDTH: f64 = 0.9;
+/// Depth of a robot: its middle is behind the foot that is visible, m.
+const HALF_DEPTH: f64 = 0.08;
+/// Height of a robot, m (Nao: 0.57).
+const HEIGHT: f64 = 0.57;
+/// Cells between two columns that are scanned.
+const SPACING: usize = 2;
+
+/// The search for other robots.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct RobotScan {
+    /// The foot of an obstacle in each scanned column.
+    feet: Vec<Option<usize>>,
+}
+
+impl RobotScan {
+    pub(crate) fn scan(&mut self, look: &Look<'_>, border: &BorderScan, seen: &mut Seen) {
+        self.feet.clear();
+        let columns = (0..look.map.columns).step_by(SPACING);
+        self.feet.extend(columns.map(|column| {
+            let is_post = seen.posts.iter().any(|post| is_beside(look, post, column));
+            if is_post { None } else { foot(look, border, column) }
+        }));
+        let mut start = 0;
+        while start < self.feet.len() {
+            let end = self.end_of_group(look, start);
+            if end > start {
+                seen.robots.extend(self.robot(look, start, end));
+            }
+            start = end.max(start + 1);
+        }
+        drop_arms(look, &mut seen.robots);
+    }
+
+    /// The index after a group of neighbours whose feet are about as far away.
+    fn end_of_group(&self, look: &Look<'_>, start: usize) -> usize {
+        let Some(mut last) = self.feet[start] else { return start };
+        let (mut end, mut gap) = (start + 1, 0);
+        let mut index = start + 1;
+        while index < self.feet.len() && gap <= 2 {
+            match self.feet[index] {
+                Some(foot) if is_same_body(look, index, last, foot) => {
+                    (last, end, gap) = (foot, index + 1, 0);
+                }
+                _ => gap += 1,
+            }
+            index += 1;
+        }
+        end
+    }
+
+    fn robot(&self, look: &Look<'_>, start: usize, end: usize) -> Option<SeenRobot> {
+        let (map, step) = (look.map, look.map.step as f64);
+        let (left, right) = (start * SPACING, (end * SPACING).min(map.columns));
+        let foot = self.feet[start..end].iter().copied().flatten().max()?;
+        // Below the image, the distance of a foot is not known.
+        if foot + 2 >= map.rows {
+            return None;
+        }
+        let centre = (left + right) as f64 / 2.0 * step;
+        let bottom = (foot + 1) as f64 * step;
+        let scale = look.camera.scale(centre, bottom, 0.0) / step;
+        let width = (right - left) as f64 / scale.max(1e-6);
+        let is_cut = left == 0 || right + SPACING >= map.columns;
+        if width < LEAST_WIDTH || (width > MOST_WIDTH && !is_cut) {
+            return None;
+        }
+        // Neither legs nor chest show the carpet; a line that runs away gets narrower.
+        let row = |height: f64| (foot as f64 - height * scale).max(0.0) as f32;
+        let legs = map.shares(left as f32, row(0.3), right as f32, foot as f32);
+        let middle = (left + right) as f64 / 2.0;
+        let side = |by: f64| (middle + by * scale) as f32;
+        let chest = map.shares(side(-0.07), row(0.42), side(0.07), row(0.28));
+        if legs.green > 0.35 || chest.green > 0.25 {
+            return None;
+        }
+        let near = look.camera.point_at_height(centre, bottom, 0.0)?;
+        let away = near - look.camera.position().xy();
+        let position = near + away.normalize() * HALF_DEPTH;
+        let top = (foot as f64 - HEIGHT * scale).max(0.0);
+        let area = PixelBox { left: left as f64 * step, top: top * step, right: right as f64 * step, bottom };
+        Some(SeenRobot { sight: Sight::new(position, area), jersey: jersey(look, left, right, foot, scale) })
+    }
+}
+
+/// Removes arms beside a robot: their lower ends are above the ground, so they seem to be narrow
+/// and farther away.
+fn drop_arms(look: &Look<'_>, robots: &mut Vec<SeenRobot>) {
+    /// Greatest seeming width of an arm, and gap between it and the legs, m.
+    const ARM: f64 = 0.17;
+    const GAP: f64 = 0.12;
+    let width = |area: &PixelBox| area.right - area.left;
+    let scale = |area: &PixelBox| look.camera.scale((area.left + area.right) / 2.0, area.bottom, 0.0);
+    let is_arm = |one: &SeenRobot, of: &SeenRobot| {
+        let (arm, body) = (&one.sight.area, &of.sight.area);
+        let gap = GAP * scale(body);
+        one.sight.distance > of.sight.distance
+            && width(arm) < ARM * scale(arm)
+            && arm.left < body.right + gap
+            && arm.right > body.left - gap
+    };
+    let mut index = 0;
+    while index < robots.len() {
+        let one = robots[index];
+        match robots.iter().any(|of| is_arm(&one, of)) {
+            true => drop(robots.remove(index)),
+            false => index += 1,
+        }
+    }
+}
+
+/// Whether a column shows a post that was found.
+fn is_beside(look: &Look<'_>, post: &GoalPost, column: usize) -> bool {
+    let x = column as f64 * look.map.step as f64;
+    let margin = 0.3 * (post.sight.area.right - post.sight.area.left) + 2.0;
+    (post.sight.area.left - margin..post.sight.area.right + margin).contains(&x)
+}
+
+/// Whether two neighbouring columns show feet at about the same distance.
+fn is_same_body(look: &Look<'_>, index: usize, one: usize, other: usize) -> bool {
+    let (map, step) = (look.map, look.map.step as f64);
+    let x = (index * SPACING) as f64 * step;
+    let scale = look.camera.scale(x, one.max(other) as f64 * step, 0.0) / step;
+    debug_assert!(index * SPACING < map.columns + SPACING);
+    (one.abs_diff(other) as f64) < 0.14 * scale + 2.0
+}
+
+/// The foot of the nearest thing in a column that is high enough.
+fn foot(look: &Look<'_>, border: &BorderScan, column: usize) -> Option<usize> {
+    let (map, step) = (look.map, look.map.step as f64);
+    let x = (column as f64 + 0.5) * step;
+    let edge = border.row(column);
+    let (mut foot, mut carpet) = (None, 0);
+    for row in (0..map.rows).rev() {
+        let is_carpet = map.at(column, row) == ColourClass::Green;
+        match foot {
+            _ if is_carpet => {
+                carpet += 1;
+                // A single cell of carpet does not divide a body.
+                if carpet >= 2 {
+                    foot = None;
+                }
+            }
+            None => {
+                // Beyond the border there is no field to stand on.
+                if (row as f32) < edge + 2.0 {
+                    return None;
+                }
+                (foot, carpet) = (Some(row), 0);
+            }
+            Some(start) => {
+                carpet = 0;
+                let scale = look.camera.scale(x, (start + 1) as f64 * step, 0.0) / step;
+                let height = (start - row) as f64;
+                let is_inside = start as f64 > f64::from(edge) + 2.0 + 0.05 * scale;
+                if height >= LEAST_HEIGHT * scale && scale > 0.0 {
+                    return is_inside.then_some(start);
+                }
+            }
+        }
+    }
+    None
+}
+
+/// The colour of the jersey: the more frequent one between hips and shoulders.
+fn jersey(look: &Look<'_>, left: usize, right: usize, foot: usize, scale: f64) -> Jersey {
+    let row = |height: f64| (foot as f64 - height * scale).max(0.0) as usize;
+    let (mut blue, mut red, mut all) = (0u32, 0u32, 0u32);
+    for y in row(0.5)..row(0.22) {
+        for x in left..right {
+            let class = look.map.at(x, y);
+            blue += u32::from(class == ColourClass::Blue);
+            red += u32::from(matches!(class, ColourClass::Red | ColourClass::Orange));
+            all += 1;
+        }
+    }
+    match all {
+        _ if blue > 2 * red && 12 * blue > all => Jersey::Blue,
+        _ if red > 2 * blue && 12 * red > all => Jersey::Red,
+        _ => Jersey::Unknown,
+    }
+}

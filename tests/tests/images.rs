@@ -1,0 +1,131 @@
+//! Robots that see images: what they find is where it is, and they play.
+#![allow(clippy::unwrap_used)] // tests may panic
+
+use std::time::Duration;
+
+use monas_match::{MatchOptions, MatchSource};
+use monas_nao as _; // the body registers itself at link time
+use monas_robot::{Disturbances, ObjectKind, Percepts, Robot, Sighting, WrappedBody};
+use monas_sim::{MatchRules, Pose, Setup, SharedField, SimulatedWorld, Vector};
+use monas_soccer::image_interpreter::ImageInterpreter;
+use narukom::Timestamp;
+
+/// A world in which play has begun and the robots stand in a corner, but for the one at index 1.
+fn world(seed: u64) -> SimulatedWorld {
+    let rules =
+        MatchRules { initial_duration: 0.0, ready_duration: 0.0, set_duration: 0.0, ..MatchRules::default() };
+    let mut world = SimulatedWorld::new(Setup { rules, ..Setup::three_against_three(seed) }).unwrap();
+    (0..20).for_each(|_| world.step());
+    for robot in [0, 2, 3, 4, 5] {
+        world.place_robot(robot, Pose::new(-2.8 + 0.4 * robot as f64, 2.4, 0.0)).unwrap();
+    }
+    world
+}
+
+fn of(objects: &[Sighting], kinds: &[ObjectKind]) -> Vec<Sighting> {
+    objects.iter().filter(|object| kinds.contains(&object.kind())).copied().collect()
+}
+
+#[test]
+fn what_images_show_is_where_it_is() {
+    let field = SharedField::new(world(3));
+    let mut body = field.body(1).unwrap();
+    body.deliver_images().unwrap();
+    let (mut percepts, mut interpreter) = (Percepts::default(), ImageInterpreter::default());
+    let (mut shown, mut errors, mut false_balls, mut posts, mut images) = (0, Vec::new(), 0, Vec::new(), 0);
+    let mut now = 0;
+    for round in 0..60 {
+        // From 0.6 to 2.6 m, up to 20 degrees aside, while the light changes.
+        let (distance, bearing) = (0.6 + f64::from(round % 11) * 0.2, f64::from(round % 7 - 3) * 0.11);
+        let (sin, cos) = libm::sincos(bearing);
+        let pose = Pose::new(0.3, -0.2, 0.15 * f64::from(round % 3 - 1));
+        let ball = pose.to_outer(Vector::new(distance * cos, distance * sin));
+        field.change(|world| world.place_robot(1, pose)).unwrap();
+        field.change(|world| world.place_ball(ball, Vector::zeros())).unwrap();
+        for _ in 0..4 {
+            (0..20).for_each(|_| field.step());
+            now += 200_000_000;
+            percepts.clear_news();
+            body.sense(Timestamp::from_nanos(now), &mut percepts).unwrap();
+            assert!(percepts.sightings.is_none(), "there are images in place of sightings");
+            let Some(taken) = &percepts.images else { continue };
+            images += 1;
+            let pixels = taken.images.iter().map(|image| image.pixels.len());
+            assert_eq!(pixels.collect::<Vec<_>>(), [153_600; 2], "two images of 320 by 240");
+            let (ball, own) = field.with_world(|world| (world.ball().position, world.robots()[1].pose));
+            let truth = own.to_own(ball);
+            let seen = interpreter.interpret(taken, &percepts.sensors).unwrap();
+            shown += 1;
+            for found in of(&seen.objects, &[ObjectKind::Ball]) {
+                let (sin, cos) = libm::sincos(found.bearing);
+                let error = (Vector::new(cos, sin) * found.distance - truth).norm() / truth.norm();
+                if error < 0.25 { errors.push(error) } else { false_balls += 1 }
+            }
+            let kinds = [ObjectKind::LeftPost, ObjectKind::RightPost, ObjectKind::SomePost];
+            let found = of(&seen.objects, &kinds);
+            for post in found {
+                // The yellow goal is ahead, 2.7 m away.
+                let (sin, cos) = libm::sincos(post.bearing);
+                let at = own.to_outer(Vector::new(cos, sin) * post.distance);
+                let away = [0.7, -0.7].map(|y| (at - Vector::new(3.0, y)).norm());
+                posts.push(away.into_iter().fold(9.0, f64::min));
+            }
+        }
+    }
+    let mean = |errors: &[f64]| errors.iter().sum::<f64>() / errors.len() as f64;
+    let (error, away) = (mean(&errors), mean(&posts));
+    let wrong_posts = posts.iter().filter(|away| **away > 0.6).count();
+    println!("{images} images: ball {} of {shown}, error {error:.3}, {false_balls} false", errors.len());
+    println!("{} posts, on average {away:.2} m away from one, {wrong_posts} beyond 0.6 m", posts.len());
+    assert!(shown > 200 && errors.len() * 100 >= shown * 95, "{} of {shown} balls", errors.len());
+    // The inclination of the torso is measured with a deviation of 0.01 rad.
+    assert!(error < 0.04 && false_balls <= 2, "error {error}, {false_balls} false balls");
+    assert!(posts.len() > images, "{} posts in {images} images", posts.len());
+    assert!(away < 0.25 && wrong_posts * 50 <= posts.len(), "{away} m, {wrong_posts} of {}", posts.len());
+}
+
+#[test]
+fn a_robot_that_sees_images_finds_and_moves_the_ball() {
+    let blind = Disturbances { loss: 1.0, ..Disturbances::default() };
+    let path = monas_tests::root().join("config/match.xml");
+    let displaced = |sees: bool| {
+        let plan = MatchSource::load(&path, &monas::Registry::linked()).unwrap();
+        // One robot plays; it sees images or nothing, the others nothing.
+        let plan = plan.without_agents(2).embody(move |team, number, mut body| {
+            if (team, number, sees) == (1, 2, true) {
+                body.deliver_images().unwrap();
+                return body;
+            }
+            Box::new(WrappedBody::new(body, blind, 1))
+        });
+        let mut running = plan.start(MatchOptions { seed: 1, ..MatchOptions::default() }).unwrap();
+        running.advance(Duration::from_secs(20)).unwrap();
+        running.pitch().with_world(|world| world.ball().position.norm())
+    };
+    assert!(displaced(true) > 0.3, "the ball is where it was");
+    assert!(displaced(false) < 0.05, "blind robots do not find the ball");
+}
+
+#[test]
+fn the_match_with_images_starts_and_repeats() {
+    let path = monas_tests::root().join("config/match_images.xml");
+    let hash = || {
+        let plan = MatchSource::load(&path, &monas::Registry::linked()).unwrap();
+        let mut running = plan.start(MatchOptions { seed: 1, ..MatchOptions::default() }).unwrap();
+        running.advance(Duration::from_millis(300)).unwrap();
+        running.finish().unwrap().hash
+    };
+    assert_eq!(hash(), hash());
+}
+
+#[test]
+fn a_body_without_images_says_so() {
+    let settings = monas_robot::BodySettings {
+        kind: "nao".into(),
+        vision: monas_robot::CameraOutput::Images,
+        ..Default::default()
+    };
+    let field = SharedField::new(world(1));
+    let error = settings.open(field.body(0).map(|body| Box::new(body) as _), 1).map(|_| ()).unwrap_err();
+    assert!(error.to_string().contains("delivers no images"), "{error}");
+}
