@@ -77,9 +77,9 @@ impl Server {
         &self.monitors
     }
 
-    #[allow(clippy::disallowed_methods)] // waits for another process, before the run begins
     /// A monitor of the server, once it makes its cycles. Version 0.2.1 ends with an error when an
     /// agent joins in the first one.
+    #[expect(clippy::disallowed_methods, reason = "waits for another process, before the run begins")]
     pub(crate) fn monitor(&mut self) -> Result<Monitor, Error> {
         let begun = Instant::now();
         loop {

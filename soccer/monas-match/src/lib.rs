@@ -20,7 +20,7 @@
 //! let mut running = plan.start(MatchOptions { seed: 7, ..MatchOptions::default() })?;
 //! running.advance(Duration::from_secs(60))?;
 //! println!("{} : {}", running.score().teams[0].goals, running.score().teams[1].goals);
-//! println!("{}", running.finish()?.hash);
+//! println!("{}", running.finish()?.hash.expect("simulated time"));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 

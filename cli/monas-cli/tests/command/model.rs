@@ -290,7 +290,10 @@ fn the_coverage_of_tapes_is_summed_reported_and_drawn() {
     assert!(charts[0].starts_with("goalie (blue-1 Goalie, red-1 Goalie): "), "{}", charts[0]);
     assert!(charts[1].starts_with("player (blue-2 Attacker, blue-3 Attacker): "), "{}", charts[1]);
     assert!(
-        answer.out.lines().any(|line| line.starts_with("  never fired: center -> END : [Attack.")),
+        answer
+            .out
+            .lines()
+            .any(|line| line.starts_with("  never fired: center -> decision/takeAction/3/END : [Attack.")),
         "{}",
         answer.out
     );

@@ -227,14 +227,14 @@ mod tests {
         let expected = [
             "never active: a",
             "never active: d",
-            "never fired: START -> a",
+            "never fired: r/START -> a",
             "never fired: a -> (b|c|d)",
-            "never fired: (b|c|d) -> END",
-            "never fired: START -> CONDITION",
+            "never fired: (b|c|d) -> r/END",
+            "never fired: (b|c|d)/START -> CONDITION",
             "never fired: CONDITION -> d",
-            "never fired: d -> END",
-            "never fired: c -> END",
-            "never fired: b -> END",
+            "never fired: d -> (b|c|d)/END",
+            "never fired: c -> (b|c|d)/END",
+            "never fired: b -> (b|c|d)/END",
             "never false: CONDITION -> b : [B.x]",
         ];
         assert_eq!(missed, expected);
