@@ -98,5 +98,5 @@ fn the_attacker_scores_on_the_soccer_server() {
     let goals: Vec<Option<u64>> = (1..=runs).map(|seed| Run::new(&policy, seed).first_goal()).collect();
     println!("the first goal of each run, s: {goals:?}");
     let scored = goals.iter().flatten().count() as u64;
-    assert!(4 * scored >= runs, "{scored} of {runs} runs with a goal");
+    assert!(10 * scored >= 7 * runs, "{scored} of {runs} runs with a goal");
 }

@@ -32,7 +32,7 @@
 //! assert_eq!((flat.states.len(), flat.conditions.as_slice()), (2, ["!broken".to_owned()].as_slice()));
 //! assert!(flat.to_rust().contains("
 //!             (State::Off, Event::Button) => {
-//!                 if world.not_broken() {
+//!                 if host.not_broken() {
 //!                     *self = State::On;
 //!                 }
 //!             }

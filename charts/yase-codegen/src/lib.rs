@@ -32,7 +32,7 @@
 //!     door.connect(Transition { expression: parse_transition(text).0, ..Transition::new(source, target) });
 //! }
 //! let code = flatten(&door, Semantics::yase(), 100).expect("it is simple enough").to_rust();
-//! assert!(code.contains("pub trait World {\n    /// The condition `!locked`\n    fn not_locked(&self) -> bool;"));
+//! assert!(code.contains("pub trait Host {\n    /// The condition `!locked`\n    fn not_locked(&self) -> bool;"));
 //! ```
 
 pub mod flatten;

@@ -30,8 +30,8 @@
 //! const BALL: Source<Ball> = Source::new(0);
 //! const NEAR: f64 = 0.25;
 //!
-//! fn look_to_kick(world: &World<'_>) -> GuardResult {
-//!     all!(holds(world.latest(BALL)?.found)?, less(world.latest(BALL)?.distance, NEAR)?)
+//! fn look_to_kick(input: &GuardInput<'_>) -> GuardResult {
+//!     all!(holds(input.latest(BALL)?.found)?, less(input.latest(BALL)?.distance, NEAR)?)
 //! }
 //!
 //! let mut chart = TypedChartBuilder::new("player");
@@ -80,7 +80,7 @@ pub use operand::{
 };
 pub use yase::expression::{CallError, Field, NodeId, inside_mut, set};
 pub use yase::native::{
-    Function, GuardResult, GuardUnknown, Source, SourceDeclaration, Timer, TypedTest, TypedValue, World,
+    Function, GuardInput, GuardResult, GuardUnknown, Source, SourceDeclaration, Timer, TypedTest, TypedValue,
 };
 pub use yase::{Diagnostic, NodeKind, Value};
 
@@ -176,7 +176,7 @@ mod tests {
         draft.add(NodeId(3), NodeId(0), NodeKind::Basic, "go");
         draft.connect(NodeId(1), NodeId(2), "/ StartTimeout(late, 1s)");
         draft.connect(NodeId(2), NodeId(3), "[late]");
-        draft.guard(|world| Ok(world.is_over(Timer(0))));
+        draft.guard(|input| Ok(input.is_over(Timer(0))));
         let chart = draft.finish().unwrap();
         let vocabulary = yase::TypeEnvironment::default();
         let typed = chart.compile(&vocabulary, yase::Semantics::yase()).unwrap();

@@ -255,7 +255,7 @@ impl Default for Suggestions {
 }
 
 impl Suggestions {
-    /// The candidate [nearest](nearest) to `wrong`; none if the comparisons are used up.
+    /// The candidate [nearest] to `wrong`; none if the comparisons are used up.
     pub fn nearest<'a>(&self, wrong: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
         let candidates = candidates.into_iter().map_while(|name| {
             self.left.set(self.left.get().checked_sub(1)?);

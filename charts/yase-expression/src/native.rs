@@ -1,5 +1,5 @@
 //! Guards and assigned values as Rust functions: a host compiles a chart with functions in place of
-//! texts, and the machine calls them with the current data ([`World`]).
+//! texts, and the machine calls them with the current data ([`GuardInput`]).
 
 use std::any::Any;
 use std::fmt;
@@ -89,18 +89,18 @@ pub struct Slots {
 
 /// The data that a guard reads in one evaluation.
 #[derive(Clone, Copy)]
-pub struct World<'a> {
+pub struct GuardInput<'a> {
     facts: &'a dyn EvalContext,
     slots: &'a Slots,
 }
 
-impl fmt::Debug for World<'_> {
+impl fmt::Debug for GuardInput<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("World").field("slots", self.slots).finish_non_exhaustive()
+        f.debug_struct("GuardInput").field("slots", self.slots).finish_non_exhaustive()
     }
 }
 
-impl<'a> World<'a> {
+impl<'a> GuardInput<'a> {
     fn source<M>(&self, source: Source<M>) -> Result<&'a MessageSource, GuardUnknown> {
         self.slots.sources.get(source.number).ok_or(GuardError::WrongType.into())
     }
@@ -169,9 +169,9 @@ impl<'a> World<'a> {
 }
 
 /// A guard as a function.
-pub type GuardFn = fn(&World<'_>) -> GuardResult;
+pub type GuardFn = fn(&GuardInput<'_>) -> GuardResult;
 /// An assigned value as a function.
-pub type ValueFn = for<'a> fn(&World<'a>) -> Result<Value<'a>, GuardUnknown>;
+pub type ValueFn = for<'a> fn(&GuardInput<'a>) -> Result<Value<'a>, GuardUnknown>;
 type FieldSetterFn = dyn Fn(&mut dyn Any, Value<'_>) -> Result<(), CallError> + Send + Sync;
 
 /// A guard that is a function.
@@ -189,7 +189,7 @@ impl TypedTest {
     /// # Errors
     /// An operation has no result.
     pub fn ask(&self, facts: &impl EvalContext) -> Result<Option<bool>, GuardError> {
-        match (self.test)(&World { facts, slots: &self.slots }) {
+        match (self.test)(&GuardInput { facts, slots: &self.slots }) {
             Ok(holds) => Ok(Some(holds)),
             Err(GuardUnknown::Unknown) => Ok(None),
             Err(GuardUnknown::Failed(error)) => Err(error),
@@ -212,7 +212,7 @@ impl TypedValue {
     /// # Errors
     /// An operation has no result.
     pub fn ask<'a>(&'a self, facts: &'a impl EvalContext) -> Result<Value<'a>, GuardError> {
-        match (self.value)(&World { facts, slots: &self.slots }) {
+        match (self.value)(&GuardInput { facts, slots: &self.slots }) {
             Ok(value) => Ok(value),
             Err(GuardUnknown::Unknown) => Ok(Value::Missing),
             Err(GuardUnknown::Failed(error)) => Err(error),

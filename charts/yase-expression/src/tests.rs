@@ -6,4 +6,4 @@ mod evaluate;
 mod parse;
 mod print;
 mod refusals;
-mod world;
+mod test_context;

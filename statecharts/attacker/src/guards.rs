@@ -3,73 +3,73 @@
 #![allow(non_snake_case)] // the names are those of states
 
 use ::monas::generated::{
-    GuardResult, World, all, any, at_least, at_most, equal, given, holds, less, minus, more,
+    GuardInput, GuardResult, all, any, at_least, at_most, equal, given, holds, less, minus, more,
 };
 
 use super::words::{constants, functions, messages, timers, values};
 
 /// From `RobotController` to `RobotController`: `[robot_timeout]`
-pub(crate) fn from_RobotController_to_RobotController(world: &World<'_>) -> GuardResult {
-    Ok(world.is_over(timers::robot_timeout))
+pub(crate) fn from_RobotController_to_RobotController(input: &GuardInput<'_>) -> GuardResult {
+    Ok(input.is_over(timers::robot_timeout))
 }
 
 /// From `LedHandler` to `LedHandler`: `[led_timeout]`
-pub(crate) fn from_LedHandler_to_LedHandler(world: &World<'_>) -> GuardResult {
-    Ok(world.is_over(timers::led_timeout))
+pub(crate) fn from_LedHandler_to_LedHandler(input: &GuardInput<'_>) -> GuardResult {
+    Ok(input.is_over(timers::led_timeout))
 }
 
 /// From `MotionController` to `MotionController`: `[motion_timeout]`
-pub(crate) fn from_MotionController_to_MotionController(world: &World<'_>) -> GuardResult {
-    Ok(world.is_over(timers::motion_timeout))
+pub(crate) fn from_MotionController_to_MotionController(input: &GuardInput<'_>) -> GuardResult {
+    Ok(input.is_over(timers::motion_timeout))
 }
 
 /// From `START` in `Sensors~` to `Sensors`: `[GameState.player_state == PLAYING]`
-pub(crate) fn from_START_to_Sensors(world: &World<'_>) -> GuardResult {
-    equal(world.latest(messages::GAME_STATE)?.player_state, values::PLAYING)
+pub(crate) fn from_START_to_Sensors(input: &GuardInput<'_>) -> GuardResult {
+    equal(input.latest(messages::GAME_STATE)?.player_state, values::PLAYING)
 }
 
 /// From `Sensors` to `Sensors`: `[sensors_timeout && GameState.player_state == PLAYING]`
-pub(crate) fn from_Sensors_to_Sensors(world: &World<'_>) -> GuardResult {
+pub(crate) fn from_Sensors_to_Sensors(input: &GuardInput<'_>) -> GuardResult {
     all!(
-        world.is_over(timers::sensors_timeout),
-        equal(world.latest(messages::GAME_STATE)?.player_state, values::PLAYING)?,
+        input.is_over(timers::sensors_timeout),
+        equal(input.latest(messages::GAME_STATE)?.player_state, values::PLAYING)?,
     )
 }
 
 /// From `START` in `Vision~` to `Vision`: `[GameState.player_state == PLAYING]`
-pub(crate) fn from_START_to_Vision(world: &World<'_>) -> GuardResult {
-    equal(world.latest(messages::GAME_STATE)?.player_state, values::PLAYING)
+pub(crate) fn from_START_to_Vision(input: &GuardInput<'_>) -> GuardResult {
+    equal(input.latest(messages::GAME_STATE)?.player_state, values::PLAYING)
 }
 
 /// From `Vision` to `Vision`: `[vision_timeout && GameState.player_state == PLAYING]`
-pub(crate) fn from_Vision_to_Vision(world: &World<'_>) -> GuardResult {
+pub(crate) fn from_Vision_to_Vision(input: &GuardInput<'_>) -> GuardResult {
     all!(
-        world.is_over(timers::vision_timeout),
-        equal(world.latest(messages::GAME_STATE)?.player_state, values::PLAYING)?,
+        input.is_over(timers::vision_timeout),
+        equal(input.latest(messages::GAME_STATE)?.player_state, values::PLAYING)?,
     )
 }
 
 /// From `CONDITION` in `(search|takeAction)` to `search`: `[!Ball.found]`
-pub(crate) fn from_CONDITION_to_search(world: &World<'_>) -> GuardResult {
-    Ok(!holds(world.latest(messages::BALL)?.found)?)
+pub(crate) fn from_CONDITION_to_search(input: &GuardInput<'_>) -> GuardResult {
+    Ok(!holds(input.latest(messages::BALL)?.found)?)
 }
 
 /// From `CONDITION` in `(search|takeAction)` to `takeAction`: `[Ball.found]`
-pub(crate) fn from_CONDITION_to_takeAction(world: &World<'_>) -> GuardResult {
-    holds(world.latest(messages::BALL)?.found)
+pub(crate) fn from_CONDITION_to_takeAction(input: &GuardInput<'_>) -> GuardResult {
+    holds(input.latest(messages::BALL)?.found)
 }
 
 /// From `CONDITION` in `roam` to `WalkTowardsCentre`: `[Ball.age > wander && (abs(Pose.x) > central || abs(Pose.y) > central)]`
-pub(crate) fn from_CONDITION_to_WalkTowardsCentre(world: &World<'_>) -> GuardResult {
+pub(crate) fn from_CONDITION_to_WalkTowardsCentre(input: &GuardInput<'_>) -> GuardResult {
     all!(
-        more(world.latest(messages::BALL)?.age, constants::wander)?,
+        more(input.latest(messages::BALL)?.age, constants::wander)?,
         any!(
             more(
-                world.call(functions::abs, &[given(world.latest(messages::POSE)?.x)?])?,
+                input.call(functions::abs, &[given(input.latest(messages::POSE)?.x)?])?,
                 constants::central,
             )?,
             more(
-                world.call(functions::abs, &[given(world.latest(messages::POSE)?.y)?])?,
+                input.call(functions::abs, &[given(input.latest(messages::POSE)?.y)?])?,
                 constants::central,
             )?,
         )?,
@@ -77,45 +77,45 @@ pub(crate) fn from_CONDITION_to_WalkTowardsCentre(world: &World<'_>) -> GuardRes
 }
 
 /// From `CONDITION` in `[roam]` to `roam`: `[Ball.age >= look]`
-pub(crate) fn from_CONDITION_to_roam(world: &World<'_>) -> GuardResult {
-    at_least(world.latest(messages::BALL)?.age, constants::look)
+pub(crate) fn from_CONDITION_to_roam(input: &GuardInput<'_>) -> GuardResult {
+    at_least(input.latest(messages::BALL)?.age, constants::look)
 }
 
 /// From `CONDITION` in `(TrackBall|LookAtGoal)` to `LookAtGoal`: `[glance_timeout && Pose.confidence < certain && Ball.distance > quiet && Ball.speed < still && Ball.age < seen]`
-pub(crate) fn from_CONDITION_to_LookAtGoal(world: &World<'_>) -> GuardResult {
+pub(crate) fn from_CONDITION_to_LookAtGoal(input: &GuardInput<'_>) -> GuardResult {
     all!(
-        world.is_over(timers::glance_timeout),
-        less(world.latest(messages::POSE)?.confidence, constants::certain)?,
-        more(world.latest(messages::BALL)?.distance, constants::quiet)?,
-        less(world.latest(messages::BALL)?.speed, constants::still)?,
-        less(world.latest(messages::BALL)?.age, constants::seen)?,
+        input.is_over(timers::glance_timeout),
+        less(input.latest(messages::POSE)?.confidence, constants::certain)?,
+        more(input.latest(messages::BALL)?.distance, constants::quiet)?,
+        less(input.latest(messages::BALL)?.speed, constants::still)?,
+        less(input.latest(messages::BALL)?.age, constants::seen)?,
     )
 }
 
 /// From `CONDITION` in `(WalkTowardsBall|AlignWithBall|kickBall|SupportMate)` to `WalkTowardsBall`: `[Ball.distance > near && Ball.mate_lead <= nearer && !Ball.in_own_area]`
-pub(crate) fn from_CONDITION_to_WalkTowardsBall(world: &World<'_>) -> GuardResult {
+pub(crate) fn from_CONDITION_to_WalkTowardsBall(input: &GuardInput<'_>) -> GuardResult {
     all!(
-        more(world.latest(messages::BALL)?.distance, constants::near)?,
-        at_most(world.latest(messages::BALL)?.mate_lead, constants::nearer)?,
-        !holds(world.latest(messages::BALL)?.in_own_area)?,
+        more(input.latest(messages::BALL)?.distance, constants::near)?,
+        at_most(input.latest(messages::BALL)?.mate_lead, constants::nearer)?,
+        !holds(input.latest(messages::BALL)?.in_own_area)?,
     )
 }
 
 /// From `CONDITION` in `(WalkTowardsBall|AlignWithBall|kickBall|SupportMate)` to `AlignWithBall`: `[Ball.distance <= near && (Ball.speed >= still || abs(Ball.x - kick_x) > tolerance || abs(abs(Ball.y) - kick_y) > tolerance)]`
-pub(crate) fn from_CONDITION_to_AlignWithBall(world: &World<'_>) -> GuardResult {
+pub(crate) fn from_CONDITION_to_AlignWithBall(input: &GuardInput<'_>) -> GuardResult {
     all!(
-        at_most(world.latest(messages::BALL)?.distance, constants::near)?,
+        at_most(input.latest(messages::BALL)?.distance, constants::near)?,
         any!(
-            at_least(world.latest(messages::BALL)?.speed, constants::still)?,
+            at_least(input.latest(messages::BALL)?.speed, constants::still)?,
             more(
-                world.call(functions::abs, &[minus(world.latest(messages::BALL)?.x, constants::kick_x)?])?,
+                input.call(functions::abs, &[minus(input.latest(messages::BALL)?.x, constants::kick_x)?])?,
                 constants::tolerance,
             )?,
             more(
-                world.call(
+                input.call(
                     functions::abs,
                     &[minus(
-                        world.call(functions::abs, &[given(world.latest(messages::BALL)?.y)?])?,
+                        input.call(functions::abs, &[given(input.latest(messages::BALL)?.y)?])?,
                         constants::kick_y,
                     )?],
                 )?,
@@ -126,19 +126,19 @@ pub(crate) fn from_CONDITION_to_AlignWithBall(world: &World<'_>) -> GuardResult 
 }
 
 /// From `CONDITION` in `(WalkTowardsBall|AlignWithBall|kickBall|SupportMate)` to `kickBall`: `[Ball.distance <= near && Ball.speed < still && abs(Ball.x - kick_x) <= tolerance && abs(abs(Ball.y) - kick_y) <= tolerance]`
-pub(crate) fn from_CONDITION_to_kickBall(world: &World<'_>) -> GuardResult {
+pub(crate) fn from_CONDITION_to_kickBall(input: &GuardInput<'_>) -> GuardResult {
     all!(
-        at_most(world.latest(messages::BALL)?.distance, constants::near)?,
-        less(world.latest(messages::BALL)?.speed, constants::still)?,
+        at_most(input.latest(messages::BALL)?.distance, constants::near)?,
+        less(input.latest(messages::BALL)?.speed, constants::still)?,
         at_most(
-            world.call(functions::abs, &[minus(world.latest(messages::BALL)?.x, constants::kick_x)?])?,
+            input.call(functions::abs, &[minus(input.latest(messages::BALL)?.x, constants::kick_x)?])?,
             constants::tolerance,
         )?,
         at_most(
-            world.call(
+            input.call(
                 functions::abs,
                 &[minus(
-                    world.call(functions::abs, &[given(world.latest(messages::BALL)?.y)?])?,
+                    input.call(functions::abs, &[given(input.latest(messages::BALL)?.y)?])?,
                     constants::kick_y,
                 )?],
             )?,
@@ -148,35 +148,35 @@ pub(crate) fn from_CONDITION_to_kickBall(world: &World<'_>) -> GuardResult {
 }
 
 /// From `CONDITION` in `(WalkTowardsBall|AlignWithBall|kickBall|SupportMate)` to `SupportMate`: `[Ball.distance > near && (Ball.mate_lead > nearer || Ball.in_own_area)]`
-pub(crate) fn from_CONDITION_to_SupportMate(world: &World<'_>) -> GuardResult {
+pub(crate) fn from_CONDITION_to_SupportMate(input: &GuardInput<'_>) -> GuardResult {
     all!(
-        more(world.latest(messages::BALL)?.distance, constants::near)?,
+        more(input.latest(messages::BALL)?.distance, constants::near)?,
         any!(
-            more(world.latest(messages::BALL)?.mate_lead, constants::nearer)?,
-            holds(world.latest(messages::BALL)?.in_own_area)?,
+            more(input.latest(messages::BALL)?.mate_lead, constants::nearer)?,
+            holds(input.latest(messages::BALL)?.in_own_area)?,
         )?,
     )
 }
 
 /// From `CONDITION` in `kickBall` to `LeftKick`: `[Ball.y >= 0]`
-pub(crate) fn from_CONDITION_to_LeftKick(world: &World<'_>) -> GuardResult {
-    at_least(world.latest(messages::BALL)?.y, 0)
+pub(crate) fn from_CONDITION_to_LeftKick(input: &GuardInput<'_>) -> GuardResult {
+    at_least(input.latest(messages::BALL)?.y, 0)
 }
 
 /// From `CONDITION` in `kickBall` to `RightKick`: `[Ball.y < 0]`
-pub(crate) fn from_CONDITION_to_RightKick(world: &World<'_>) -> GuardResult {
-    less(world.latest(messages::BALL)?.y, 0)
+pub(crate) fn from_CONDITION_to_RightKick(input: &GuardInput<'_>) -> GuardResult {
+    less(input.latest(messages::BALL)?.y, 0)
 }
 
 /// From `START` in `decision~` to `decision`: `[GameState.player_state == PLAYING]`
-pub(crate) fn from_START_to_decision(world: &World<'_>) -> GuardResult {
-    equal(world.latest(messages::GAME_STATE)?.player_state, values::PLAYING)
+pub(crate) fn from_START_to_decision(input: &GuardInput<'_>) -> GuardResult {
+    equal(input.latest(messages::GAME_STATE)?.player_state, values::PLAYING)
 }
 
 /// From `decision` to `decision`: `[decision_timeout && GameState.player_state == PLAYING]`
-pub(crate) fn from_decision_to_decision(world: &World<'_>) -> GuardResult {
+pub(crate) fn from_decision_to_decision(input: &GuardInput<'_>) -> GuardResult {
     all!(
-        world.is_over(timers::decision_timeout),
-        equal(world.latest(messages::GAME_STATE)?.player_state, values::PLAYING)?,
+        input.is_over(timers::decision_timeout),
+        equal(input.latest(messages::GAME_STATE)?.player_state, values::PLAYING)?,
     )
 }

@@ -52,7 +52,7 @@ fn guarded(guards: &[&str]) -> Statechart {
 
 fn traces(race: &Race) {
     let mut traced = Ours::new(&ours::flat());
-    traced.world.traces = true;
+    traced.host.traces = true;
     let mut contestants: Vec<Box<dyn Contestant>> =
         vec![racer("off", &ours::flat()), Box::new(Racer::new("on", FLAT, traced))];
     race.run("trace on flat, ns an event", &mut contestants);

@@ -24,7 +24,7 @@ use yase_codegen::flatten::flatten;
 use crate::counts::{Counts, Event, Toggle};
 
 /// The counters, and the data of conditions.
-struct World {
+struct CountingHost {
     counts: Counts,
     board: [i64; 2],
 }
@@ -32,7 +32,7 @@ struct World {
 /// A machine of a generated module, with the methods for the actions of its states.
 macro_rules! machine {
     ($module:ident as $machine:ident { $($enter:ident $leave:ident $state:literal)* } $({ $($condition:ident: $holds:expr;)* })?) => {
-        impl $module::World for World {
+        impl $module::Host for CountingHost {
             $(
                 fn $enter(&mut self) {
                     self.counts.enter($state);
@@ -51,16 +51,16 @@ macro_rules! machine {
 
         pub(crate) struct $machine {
             state: $module::State,
-            world: World,
+            host: CountingHost,
         }
 
         impl $machine {
             pub(crate) fn new(chart: &Statechart) -> $machine {
                 assert_is_current(chart, stringify!($module));
-                let mut world = World { counts: Counts::default(), board: [0; 2] };
-                let state = $module::State::start(&mut world);
-                world.counts = Counts::default();
-                $machine { state, world }
+                let mut host = CountingHost { counts: Counts::default(), board: [0; 2] };
+                let state = $module::State::start(&mut host);
+                host.counts = Counts::default();
+                $machine { state, host }
             }
         }
 
@@ -68,13 +68,13 @@ macro_rules! machine {
             #[inline(never)]
             fn handle(&mut self, event: Event) {
                 match event {
-                    Event::Toggle => self.state.handle($module::Event::Toggle, &mut self.world),
+                    Event::Toggle => self.state.handle($module::Event::Toggle, &mut self.host),
                     Event::Other => {}
                 }
             }
 
             fn counts(&self) -> Counts {
-                self.world.counts.clone()
+                self.host.counts.clone()
             }
         }
     };

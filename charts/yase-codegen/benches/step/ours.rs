@@ -112,7 +112,7 @@ fn fields() -> Vec<FieldEntry> {
 }
 
 /// A host that counts, with one blackboard of numbers.
-pub(crate) struct World {
+pub(crate) struct CountingHost {
     /// The meaning of each script of the chart.
     scripts: Vec<Count>,
     pub(crate) counts: Counts,
@@ -128,19 +128,19 @@ enum Count {
     Leave(usize),
 }
 
-impl World {
-    fn new(chart: &CompiledChart) -> World {
+impl CountingHost {
+    fn new(chart: &CompiledChart) -> CountingHost {
         let count = |text: &str| match text.split_once(' ') {
             Some(("enter", state)) => Count::Enter(state.parse().expect("a number")),
             Some(("leave", state)) => Count::Leave(state.parse().expect("a number")),
             _ => panic!("what is `{text}`?"),
         };
         let scripts = chart.scripts().map(|script| count(script.text)).collect();
-        World { scripts, counts: Counts::default(), board: [0; 2], traces: false, traced: 0 }
+        CountingHost { scripts, counts: Counts::default(), board: [0; 2], traces: false, traced: 0 }
     }
 }
 
-impl Host for World {
+impl Host for CountingHost {
     fn field(&self, _: ScopeId, _: &MessageSource, path: &[FieldId]) -> Value<'_> {
         match path {
             [FieldId(field)] => {
@@ -174,7 +174,7 @@ impl Host for World {
 /// A YASE machine and its host.
 pub(crate) struct Ours {
     pub(crate) machine: Machine,
-    pub(crate) world: World,
+    pub(crate) host: CountingHost,
     now: u64,
     toggle: EventId,
 }
@@ -183,12 +183,12 @@ impl Ours {
     pub(crate) fn new(chart: &Statechart) -> Ours {
         let chart = Arc::new(chart.compile(&vocabulary()).expect("the chart is in order"));
         let toggle = chart.events().find("toggle").expect("it is named");
-        let mut world = World::new(&chart);
+        let mut host = CountingHost::new(&chart);
         let mut machine = Machine::new(chart);
-        machine.start(Timestamp::ZERO, &mut world);
-        machine.run_to_completion(Timestamp::ZERO, &mut world).expect("it rests");
-        world.counts = Counts::default();
-        Ours { machine, world, now: 0, toggle }
+        machine.start(Timestamp::ZERO, &mut host);
+        machine.run_to_completion(Timestamp::ZERO, &mut host).expect("it rests");
+        host.counts = Counts::default();
+        Ours { machine, host, now: 0, toggle }
     }
 }
 
@@ -200,16 +200,16 @@ impl Toggle for Ours {
         match event {
             Event::Toggle => {
                 self.machine.dispatch(self.toggle);
-                self.machine.run_to_completion(now, &mut self.world).expect("it rests")
+                self.machine.run_to_completion(now, &mut self.host).expect("it rests")
             }
             Event::Other => {
                 assert!(!self.machine.dispatch_name("other"));
-                self.machine.run_to_completion(now, &mut self.world).expect("it rests")
+                self.machine.run_to_completion(now, &mut self.host).expect("it rests")
             }
         };
     }
 
     fn counts(&self) -> Counts {
-        self.world.counts.clone()
+        self.host.counts.clone()
     }
 }

@@ -12,7 +12,7 @@ impl FlatMachine {
         let mut code = RustEmitter { flat: self, names: GeneratedNames::of(self), text: String::new() };
         code.head();
         code.events();
-        code.world();
+        code.host();
         code.states();
         code.text
     }
@@ -78,7 +78,7 @@ impl RustEmitter<'_> {
 //! {chart}, flattened. Generated: changes here are lost.
 //!
 //! `State::start` returns the initial state, `State::handle` reacts to an event.
-//! Conditions and actions are methods of `World`.
+//! Conditions and actions are methods of `Host`.
 #![allow(dead_code, clippy::all)] // unused items are allowed, and generated code has one style
 
 "
@@ -99,8 +99,8 @@ impl RustEmitter<'_> {
         self.end();
     }
 
-    fn world(&mut self) {
-        self.lines("/// The conditions and actions of the chart.\npub trait World {\n");
+    fn host(&mut self) {
+        self.lines("/// The conditions and actions of the chart.\npub trait Host {\n");
         for (text, name) in self.flat.conditions.iter().zip(&self.names.conditions.clone()) {
             self.line(1, &format!("/// The condition `{}`", in_words(text)));
             self.line(1, &format!("fn {name}(&self) -> bool;"));
@@ -147,8 +147,8 @@ impl RustEmitter<'_> {
 
     fn start(&mut self) {
         let flat = self.flat;
-        let world = if flat.start.pieces.is_empty() { "_world" } else { "world" };
-        self.line(1, &format!("pub fn start({world}: &mut impl World) -> State {{"));
+        let host = if flat.start.pieces.is_empty() { "_host" } else { "host" };
+        self.line(1, &format!("pub fn start({host}: &mut impl Host) -> State {{"));
         self.way(&flat.start, 2, ArmEnd::Is { is_last: true });
         self.line(1, "}");
     }
@@ -156,9 +156,9 @@ impl RustEmitter<'_> {
     fn handle(&mut self) {
         let flat = self.flat;
         let is_quiet = flat.ways.iter().flatten().all(|way| way.pieces.is_empty());
-        let world = if is_quiet { "_world" } else { "world" };
+        let host = if is_quiet { "_host" } else { "host" };
         self.line(1, "#[inline]");
-        self.line(1, &format!("pub fn handle(&mut self, event: Event, {world}: &mut impl World) {{"));
+        self.line(1, &format!("pub fn handle(&mut self, event: Event, {host}: &mut impl Host) {{"));
         self.line(2, "match (*self, event) {");
         let mut has_all = !flat.events.is_empty();
         for (state, ways) in flat.ways.iter().enumerate() {
@@ -194,10 +194,10 @@ impl RustEmitter<'_> {
         for (index, piece) in way.pieces.iter().enumerate() {
             match piece {
                 FlatOp::Do(action) => {
-                    self.line(depth, &format!("world.{}();", self.names.actions[*action].clone()))
+                    self.line(depth, &format!("host.{}();", self.names.actions[*action].clone()))
                 }
                 FlatOp::If(condition, other) => {
-                    self.line(depth, &format!("if world.{}() {{", self.names.conditions[*condition].clone()));
+                    self.line(depth, &format!("if host.{}() {{", self.names.conditions[*condition].clone()));
                     let nothing_follows = index + 1 == way.pieces.len() && ending.is_done_at(way.to);
                     let early = if nothing_follows { ending } else { ending.early() };
                     self.way(other, depth + 1, early);
@@ -279,7 +279,7 @@ mod tests {
         chart.connect(yase::Transition::new(start, only));
         let code = crate::flatten::flatten(&chart, yase::Semantics::yase(), 1).unwrap().to_rust();
         assert!(code.starts_with("//! A statechart, flattened. "), "{code}");
-        assert!(code.contains("pub enum Event {}\n\n") && code.contains("pub trait World {}\n\n"), "{code}");
+        assert!(code.contains("pub enum Event {}\n\n") && code.contains("pub trait Host {}\n\n"), "{code}");
     }
 
     #[test]

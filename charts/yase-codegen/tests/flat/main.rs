@@ -139,14 +139,14 @@ fn holds(text: &str, seed: u64, step: usize, done: usize) -> bool {
     (sum ^ sum >> 29).wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 63 == 1
 }
 
-struct World<'c> {
+struct TestHost<'c> {
     chart: &'c CompiledChart,
     seed: u64,
     step: usize,
     deeds: Vec<String>,
 }
 
-impl Host for World<'_> {
+impl Host for TestHost<'_> {
     fn condition(&self, script: ScriptId, _: ScopeId, _: &ActiveStates<'_>) -> Result<bool, CallError> {
         Ok(holds(self.chart.script(script), self.seed, self.step, self.deeds.len()))
     }
@@ -166,16 +166,16 @@ impl Host for World<'_> {
 /// The behaviour of the machine.
 fn play(chart: &Arc<CompiledChart>, flat: &FlatMachine, events: &[String], seed: u64) -> Vec<Line> {
     let mut machine = Machine::new(chart.clone());
-    let mut world = World { chart, seed, step: 0, deeds: Vec::new() };
-    machine.start(Timestamp::ZERO, &mut world);
-    machine.run_to_completion(Timestamp::ZERO, &mut world).expect("it comes to rest");
-    let mut lines = vec![line(&machine, flat, std::mem::take(&mut world.deeds))];
+    let mut host = TestHost { chart, seed, step: 0, deeds: Vec::new() };
+    machine.start(Timestamp::ZERO, &mut host);
+    machine.run_to_completion(Timestamp::ZERO, &mut host).expect("it comes to rest");
+    let mut lines = vec![line(&machine, flat, std::mem::take(&mut host.deeds))];
     for (event, step) in events.iter().zip(1..) {
-        world.step = step;
+        host.step = step;
         let now = Timestamp::from_nanos(step as u64);
         machine.dispatch_name(event);
-        machine.run_to_completion(now, &mut world).expect("it comes to rest");
-        lines.push(line(&machine, flat, std::mem::take(&mut world.deeds)));
+        machine.run_to_completion(now, &mut host).expect("it comes to rest");
+        lines.push(line(&machine, flat, std::mem::take(&mut host.deeds)));
     }
     lines
 }
@@ -263,7 +263,7 @@ struct Surroundings {
     deeds: Vec<&'static str>,
 }
 
-impl written::World for Surroundings {
+impl written::Host for Surroundings {
     fn ready(&self) -> bool {
         self.ready
     }
@@ -296,22 +296,22 @@ fn a_chart_that_was_written_as_rust_runs() {
     assert_eq!(std::fs::read_to_string(file).expect("it is there"), code, "MONAS_BLESS=1 writes it anew");
 
     use written::Event::{Back, Go, Stop};
-    let mut world = Surroundings::default();
-    let mut state = written::State::start(&mut world);
+    let mut host = Surroundings::default();
+    let mut state = written::State::start(&mut host);
     assert_eq!(state.active(), ["both/one/A", "both/two/C"]);
-    state.handle(Go, &mut world);
+    state.handle(Go, &mut host);
     assert_eq!(
-        (state.active(), world.deeds.as_slice()),
+        (state.active(), host.deeds.as_slice()),
         (["both/one/A", "both/two/C"].as_slice(), [].as_slice())
     );
-    world.ready = true;
-    state.handle(Go, &mut world);
+    host.ready = true;
+    state.handle(Go, &mut host);
     assert_eq!(state.active(), ["both/one/B", "both/two/D"], "what it raises is taken in the same step");
-    state.handle(Stop, &mut world);
-    state.handle(Back, &mut world);
+    state.handle(Stop, &mut host);
+    state.handle(Back, &mut host);
     assert_eq!(state.active(), ["both/one/A", "both/two/D"], "the second region remembers");
-    assert_eq!(world.deeds, ["leave A", "move", "stop"]);
-    world.tired = true;
-    state.handle(Stop, &mut world);
+    assert_eq!(host.deeds, ["leave A", "move", "stop"]);
+    host.tired = true;
+    state.handle(Stop, &mut host);
     assert_eq!(state.active(), ["Z"]);
 }

@@ -1,7 +1,7 @@
 //! The statechart `c`, flattened. Generated: changes here are lost.
 //!
 //! `State::start` returns the initial state, `State::handle` reacts to an event.
-//! Conditions and actions are methods of `World`.
+//! Conditions and actions are methods of `Host`.
 #![allow(dead_code, clippy::all)] // unused items are allowed, and generated code has one style
 
 /// The external events.
@@ -18,7 +18,7 @@ pub enum Event {
 }
 
 /// The conditions and actions of the chart.
-pub trait World {
+pub trait Host {
     /// The condition `ready`
     fn ready(&self) -> bool;
     /// The condition `tired`
@@ -50,19 +50,19 @@ pub enum State {
 
 impl State {
     /// The initial state.
-    pub fn start(_world: &mut impl World) -> State {
+    pub fn start(_host: &mut impl Host) -> State {
         State::AC
     }
 
     /// Reacts to an event.
     #[inline]
-    pub fn handle(&mut self, event: Event, world: &mut impl World) {
+    pub fn handle(&mut self, event: Event, host: &mut impl Host) {
         match (*self, event) {
             (State::AC, Event::Go) => {
-                if world.ready() {
-                    world.leave_a();
-                    world.move_();
-                    if world.tired() {
+                if host.ready() {
+                    host.leave_a();
+                    host.move_();
+                    if host.tired() {
                         *self = State::BC;
                         return;
                     }
@@ -70,36 +70,36 @@ impl State {
                 }
             }
             (State::AC, Event::Stop) => {
-                world.leave_a();
-                world.stop();
+                host.leave_a();
+                host.stop();
                 *self = State::Z;
             }
             (State::BD, Event::Stop) => {
-                world.stop();
+                host.stop();
                 *self = State::ZV2;
             }
             (State::BC, Event::Moved) => {
-                if world.tired() {
+                if host.tired() {
                     return;
                 }
                 *self = State::BD;
             }
             (State::BC, Event::Stop) => {
-                world.stop();
+                host.stop();
                 *self = State::Z;
             }
             (State::Z, Event::Back) => *self = State::AC,
             (State::ZV2, Event::Back) => *self = State::AD,
             (State::AD, Event::Go) => {
-                if world.ready() {
-                    world.leave_a();
-                    world.move_();
+                if host.ready() {
+                    host.leave_a();
+                    host.move_();
                     *self = State::BD;
                 }
             }
             (State::AD, Event::Stop) => {
-                world.leave_a();
-                world.stop();
+                host.leave_a();
+                host.stop();
                 *self = State::ZV2;
             }
             _ => {}

@@ -2,8 +2,8 @@
 
 use std::time::Duration;
 
-use super::world::{
-    BALL, BEHAVIOR_FALL, COLOUR, DISTANCE, GAME, LEFT_ARM, MOTION, POSITION, World, X, compile_with,
+use super::test_context::{
+    BALL, BEHAVIOR_FALL, COLOUR, DISTANCE, GAME, LEFT_ARM, MOTION, POSITION, TestContext, X, compile_with,
     compiled, constants, guard, state_of, timers, vocabulary,
 };
 use crate::vocabulary::{FieldId, Value};
@@ -31,7 +31,7 @@ fn a_value_knows_what_it_reads() {
 
 #[test]
 fn a_topic_is_named_in_every_way() {
-    let world = World::new().with(BALL, &[DISTANCE], Value::Float(2.0));
+    let context = TestContext::new().with(BALL, &[DISTANCE], Value::Float(2.0));
     for variable in [
         "Ball.distance",
         "ball.distance",
@@ -40,7 +40,7 @@ fn a_topic_is_named_in_every_way() {
         "ball.State.Ball.distance",
         "`soccer.ball`.State.Ball.distance()",
     ] {
-        assert_eq!(world.holds(&format!("{variable} == 2")), Ok(true), "{variable}");
+        assert_eq!(context.holds(&format!("{variable} == 2")), Ok(true), "{variable}");
     }
     assert_eq!(guard("`left.arm`.State.Arm.angle > 1").reads(), [LEFT_ARM]);
     assert_eq!(guard("behavior.Signal.Fall.fall > 0").reads(), [BEHAVIOR_FALL]);
@@ -58,38 +58,41 @@ fn the_prefix_of_a_message_is_its_origin() {
         ("`blue-2`.ball.State.Ball.distance", Origin::Host("blue-2".into())),
         ("striker.Vision.Ball.distance", Origin::HostPublisher { host: host(), publisher: publisher() }),
     ] {
-        let world = World::new().with_from(origin.clone(), BALL, &[DISTANCE], Value::Int(1));
-        assert_eq!(world.holds(&format!("{variable} == 1")), Ok(true), "{variable}");
+        let context = TestContext::new().with_from(origin.clone(), BALL, &[DISTANCE], Value::Int(1));
+        assert_eq!(context.holds(&format!("{variable} == 1")), Ok(true), "{variable}");
         let elsewhere =
-            World::new().with_from(Origin::Host("keeper".into()), BALL, &[DISTANCE], Value::Int(1));
+            TestContext::new().with_from(Origin::Host("keeper".into()), BALL, &[DISTANCE], Value::Int(1));
         assert_eq!(elsewhere.holds(&format!("{variable} == 1")), Ok(false), "{variable}");
     }
 }
 
 #[test]
 fn fields_of_fields_are_read_in_one_path() {
-    let world = World::new().with(BALL, &[POSITION, X], Value::Float(-1.0));
-    assert_eq!(world.holds("Ball.position.x < 0"), Ok(true));
-    assert_eq!(world.holds("ball.State.Ball.position().x() < 0"), Ok(true));
+    let context = TestContext::new().with(BALL, &[POSITION, X], Value::Float(-1.0));
+    assert_eq!(context.holds("Ball.position.x < 0"), Ok(true));
+    assert_eq!(context.holds("ball.State.Ball.position().x() < 0"), Ok(true));
 }
 
 #[test]
 fn a_bare_name_is_a_value_of_the_enumeration_beside_it() {
-    let world =
-        World::new().with(GAME, &[FieldId(0)], Value::Enum(3)).with(GAME, &[FieldId(1)], Value::Enum(0));
-    assert_eq!(world.holds("GameState.player_state == PLAYING"), Ok(true));
-    assert_eq!(world.holds("PLAYING == GameState.player_state"), Ok(true));
-    assert_eq!(world.holds("GameState.phase == PLAYING"), Ok(false));
-    assert_eq!(world.holds("GameState.phase == FIRST"), Ok(true));
+    let context = TestContext::new().with(GAME, &[FieldId(0)], Value::Enum(3)).with(
+        GAME,
+        &[FieldId(1)],
+        Value::Enum(0),
+    );
+    assert_eq!(context.holds("GameState.player_state == PLAYING"), Ok(true));
+    assert_eq!(context.holds("PLAYING == GameState.player_state"), Ok(true));
+    assert_eq!(context.holds("GameState.phase == PLAYING"), Ok(false));
+    assert_eq!(context.holds("GameState.phase == FIRST"), Ok(true));
 }
 
 #[test]
 fn a_bare_name_is_a_constant_or_a_function_without_arguments() {
-    let world = World::new().with(BALL, &[COLOUR], Value::Text("blue"));
-    assert_eq!(world.holds("limit == 0.25"), Ok(true));
-    assert_eq!(world.holds("Ball.colour == own"), Ok(true));
-    assert_eq!(world.holds("!debug && kick_off"), Ok(true));
-    assert_eq!(world.holds("kick_off()"), Ok(true));
+    let context = TestContext::new().with(BALL, &[COLOUR], Value::Text("blue"));
+    assert_eq!(context.holds("limit == 0.25"), Ok(true));
+    assert_eq!(context.holds("Ball.colour == own"), Ok(true));
+    assert_eq!(context.holds("!debug && kick_off"), Ok(true));
+    assert_eq!(context.holds("kick_off()"), Ok(true));
 }
 
 #[test]
@@ -175,22 +178,22 @@ fn assignments_know_topic_field_and_value() {
         panic!("{effects:?}")
     };
     assert_eq!((*topic, &field[..], value.reads()), (BALL, &[POSITION, X][..], &[MOTION][..]));
-    let world = World::new().with(MOTION, &[FieldId(1)], Value::Int(-3));
-    assert!(matches!(value.evaluate(&world), Ok(Value::Int(-6))));
-    assert!(matches!(value.evaluate(&World::new()), Ok(Value::Missing)));
+    let context = TestContext::new().with(MOTION, &[FieldId(1)], Value::Int(-3));
+    assert!(matches!(value.evaluate(&context), Ok(Value::Int(-6))));
+    assert!(matches!(value.evaluate(&TestContext::new()), Ok(Value::Missing)));
     let Effect::Assign { value, .. } = command else { panic!("{command:?}") };
-    assert!(matches!(value.evaluate(&world), Ok(Value::Text("Init"))));
+    assert!(matches!(value.evaluate(&context), Ok(Value::Text("Init"))));
     let Effect::Assign { value, .. } = state else { panic!("{state:?}") };
-    assert!(matches!(value.evaluate(&world), Ok(Value::Enum(3))));
+    assert!(matches!(value.evaluate(&context), Ok(Value::Enum(3))));
 }
 
 #[test]
 fn a_condition_can_be_assigned() {
     let effects = effects("Ball.found = Ball.distance < limit || debug");
     let [Effect::Assign { value, .. }] = &effects[..] else { panic!("{effects:?}") };
-    let world = World::new().with(BALL, &[DISTANCE], Value::Float(0.1));
-    assert!(matches!(value.evaluate(&world), Ok(Value::Bool(true))));
-    assert!(matches!(value.evaluate(&World::new()), Ok(Value::Missing)));
+    let context = TestContext::new().with(BALL, &[DISTANCE], Value::Float(0.1));
+    assert!(matches!(value.evaluate(&context), Ok(Value::Bool(true))));
+    assert!(matches!(value.evaluate(&TestContext::new()), Ok(Value::Missing)));
 }
 
 #[test]
@@ -248,7 +251,7 @@ fn only_the_literal_is_literally_false() {
 fn the_deepest_tree_is_handled() {
     let opening = "!(false || true && 1 < 2 + 3 * abs(1.0) && ".repeat(127);
     let text = format!("{opening}true{}", ")".repeat(127));
-    assert_eq!(guard(&text).clone().evaluate(&World::new()), Ok(false));
+    assert_eq!(guard(&text).clone().evaluate(&TestContext::new()), Ok(false));
     let tree = parse_condition(&text).0.unwrap();
     assert_eq!(tree.clone().to_string(), text);
 }

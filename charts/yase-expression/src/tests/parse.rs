@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use proptest::prelude::*;
 
-use super::world::said;
+use super::test_context::said;
 use crate::diagnostic::Span;
 use crate::{
     Action, ActionKind, Additive, Comparison, Expression, ExpressionKind, Multiplicative, Name, Path,

@@ -5,7 +5,7 @@ mod parsing;
 
 use std::collections::BTreeSet;
 
-use super::world::{compile_with, said};
+use super::test_context::{compile_with, said};
 use crate::{EventInterner, parse_condition, parse_transition};
 use compiling::COMPILING;
 use parsing::PARSING;

@@ -56,10 +56,10 @@ impl GeneratedFunctions {
         });
         let guard = transition.expression.guard.as_ref().map(ToString::to_string).unwrap_or_default();
         let about = format!("{}: {}", transition_description(chart, id), quoted(&format!("[{guard}]")));
-        let world = parameter(&code);
+        let input = parameter(&code);
         let body = code.untried();
         self.text.push(format!(
-            "/// {about}\npub(crate) fn {name}({world}: &World<'_>) -> GuardResult {{\n    {}\n}}\n",
+            "/// {about}\npub(crate) fn {name}({input}: &GuardInput<'_>) -> GuardResult {{\n    {}\n}}\n",
             body.laid_out(4, 4, 0)
         ));
         self.guards.insert(id, format!("guards::{name}"));
@@ -72,9 +72,9 @@ impl GeneratedFunctions {
         let message = body.target.rsplit("::").next().unwrap_or_default().to_ascii_lowercase();
         let wish = identifier(&[&format!("{message}_{}", body.field)]);
         let name = self.name(wish.clone());
-        let world = parameter(&body.value);
+        let input = parameter(&body.value);
         self.text.push(format!(
-            "/// {}\npub(crate) fn {name}<'a>({world}: &World<'a>) -> Computed<'a> {{\n    {}\n}}\n",
+            "/// {}\npub(crate) fn {name}<'a>({input}: &GuardInput<'a>) -> Computed<'a> {{\n    {}\n}}\n",
             place(chart, at),
             body.value.laid_out(4, 4, 0)
         ));
@@ -136,12 +136,12 @@ impl GeneratedFunctions {
 }
 
 /// The names that functions use from the runtime, with the text that reveals the use.
-const RUNTIME: [(&str, &str); 26] = [
+const RUNTIME: [(&str, &str); 25] = [
     ("CallError", "CallError"),
     ("Computed", "Computed<"),
+    ("GuardInput", "GuardInput<"),
     ("GuardResult", "GuardResult"),
     ("Value", "Value<"),
-    ("World", "World<"),
     ("all", "all!("),
     ("any", "any!("),
     ("at_least", "at_least("),
@@ -162,7 +162,6 @@ const RUNTIME: [(&str, &str); 26] = [
     ("set", "set("),
     ("times", "times("),
     ("whole", "whole("),
-    ("World", "World<"),
 ];
 
 /// The known names whose text occurs in the code at a word boundary.
@@ -180,9 +179,9 @@ fn used<'a>(code: &str, known: &[(&'a str, &str)]) -> Vec<&'a str> {
     names
 }
 
-/// The name of the parameter `world`: `_` if the function does not use it.
+/// The name of the parameter `input`: `_` if the function does not use it.
 fn parameter(code: &RustCode) -> &'static str {
-    if code.flat().contains("world.") { "world" } else { "_" }
+    if code.flat().contains("input.") { "input" } else { "_" }
 }
 
 /// The name of a node in function names; none if it would be too long.

@@ -146,19 +146,19 @@ impl ExpressionWriter<'_, '_, '_> {
             }
             BooleanTerm::Absent(source) => {
                 let (source, _) = self.glossary.source(source)?;
-                RustCode::call("world.is_absent", vec![RustCode::Plain(source)])
+                RustCode::call("input.is_absent", vec![RustCode::Plain(source)])
             }
             BooleanTerm::Over { timer, when_unset } => {
                 let timer = self.glossary.timer(self.chart.timer_name(self.region, *timer));
-                let method = if *when_unset { "world.is_over" } else { "world.has_expired" };
+                let method = if *when_unset { "input.is_over" } else { "input.has_expired" };
                 RustCode::call(method, vec![RustCode::Plain(timer)])
             }
             BooleanTerm::NeverStarted(timer) => {
-                RustCode::call("world.has_expired", vec![RustCode::Plain(self.glossary.timer(timer))])
+                RustCode::call("input.has_expired", vec![RustCode::Plain(self.glossary.timer(timer))])
             }
             BooleanTerm::Active(state) => {
                 let state = format!("State::{}", self.states.variant(*state));
-                RustCode::call("world.is_in", vec![RustCode::Plain(state)])
+                RustCode::call("input.is_in", vec![RustCode::Plain(state)])
             }
             BooleanTerm::Holds(term) => RustCode::tried("holds", vec![self.term(term, None)?]),
             _ => return Err(self.not_expressible()),
@@ -181,13 +181,13 @@ impl ExpressionWriter<'_, '_, '_> {
             ValueTerm::Field(source, path) => self.field(source, path)?,
             ValueTerm::Message(source) => {
                 let (source, _) = self.glossary.source(source)?;
-                RustCode::tried("world.message", vec![RustCode::Plain(source)])
+                RustCode::tried("input.message", vec![RustCode::Plain(source)])
             }
             ValueTerm::Call(function, arguments) => {
                 let function = self.glossary.function(*function).ok_or_else(|| self.not_expressible())?;
                 let arguments = arguments.iter().map(|argument| self.argument(argument));
                 let arguments = RustCode::List(arguments.collect::<Result<_, _>>()?);
-                RustCode::tried("world.call", vec![RustCode::Plain(function), arguments])
+                RustCode::tried("input.call", vec![RustCode::Plain(function), arguments])
             }
             ValueTerm::Negative(term) => RustCode::tried("negative", vec![self.term(term, None)?]),
             ValueTerm::Sum(first, rest) => {
@@ -251,7 +251,7 @@ impl ExpressionWriter<'_, '_, '_> {
         let (names, kind) = self.glossary.fields(source, path).ok_or_else(|| self.not_expressible())?;
         let (constant, _) = self.glossary.source(source)?;
         let Some((last, outer)) = names.split_last() else { return Err(self.not_expressible()) };
-        let mut code = format!("world.latest({constant})?");
+        let mut code = format!("input.latest({constant})?");
         for name in outer {
             code = format!("inside(&{code}.{})?", field(name));
         }

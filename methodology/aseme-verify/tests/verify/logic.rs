@@ -27,7 +27,7 @@ const COMPARISONS: [&str; 6] = ["==", "!=", "<", "<=", ">", ">="];
 const PHASES: [&str; 4] = ["READY", "SET", "PLAYING", "FINISHED"];
 
 #[derive(Clone, Copy, Debug)]
-struct World {
+struct Valuation {
     x: f64,
     y: f64,
     phase: &'static str,
@@ -51,16 +51,18 @@ impl Guard {
         }
     }
 
-    fn holds(&self, world: World) -> bool {
+    fn holds(&self, valuation: Valuation) -> bool {
         match self {
-            Guard::Number("x", comparison, value) => compare(world.x, comparison, f64::from(*value)),
-            Guard::Number(_, comparison, value) => compare(world.y, comparison, f64::from(*value)),
-            Guard::Difference(comparison, value) => compare(world.x - world.y, comparison, f64::from(*value)),
-            Guard::Phase(same, phase) => (world.phase == *phase) == *same,
-            Guard::Found => world.found,
-            Guard::Not(inner) => !inner.holds(world),
-            Guard::And(parts) => parts.iter().all(|part| part.holds(world)),
-            Guard::Or(parts) => parts.iter().any(|part| part.holds(world)),
+            Guard::Number("x", comparison, value) => compare(valuation.x, comparison, f64::from(*value)),
+            Guard::Number(_, comparison, value) => compare(valuation.y, comparison, f64::from(*value)),
+            Guard::Difference(comparison, value) => {
+                compare(valuation.x - valuation.y, comparison, f64::from(*value))
+            }
+            Guard::Phase(same, phase) => (valuation.phase == *phase) == *same,
+            Guard::Found => valuation.found,
+            Guard::Not(inner) => !inner.holds(valuation),
+            Guard::And(parts) => parts.iter().all(|part| part.holds(valuation)),
+            Guard::Or(parts) => parts.iter().any(|part| part.holds(valuation)),
         }
     }
 }
@@ -76,14 +78,14 @@ fn compare(left: f64, comparison: &str, right: f64) -> bool {
     }
 }
 
-fn worlds() -> impl Iterator<Item = World> {
+fn valuations() -> impl Iterator<Item = Valuation> {
     // quarters are enough for every order of two numbers and their difference relative to integer
     // limits
     let numbers = || (-20..=20).map(|number| f64::from(number) / 4.0);
     numbers().flat_map(move |x| {
         numbers().flat_map(move |y| {
             let phases = PHASES.into_iter();
-            phases.flat_map(move |phase| [true, false].map(|found| World { x, y, phase, found }))
+            phases.flat_map(move |phase| [true, false].map(|found| Valuation { x, y, phase, found }))
         })
     })
 }
@@ -115,10 +117,10 @@ proptest! {
     fn satisfiable_conditions_hold_for_some_values(one in guard(), other in guard()) {
         let (first, second) = (condition(&one.text()), condition(&other.text()));
         let logic = GuardSolver::default();
-        let both = worlds().any(|world| one.holds(world) && other.holds(world));
+        let both = valuations().any(|valuation| one.holds(valuation) && other.holds(valuation));
         prop_assert_eq!(logic.together(&[Claim::Holds(&first), Claim::Holds(&second)]).is_yes(), both);
         prop_assert_eq!(logic.together(&[Claim::Holds(&first), Claim::Holds(&second)]).is_no(), !both);
-        let follows = worlds().all(|world| !one.holds(world) || other.holds(world));
+        let follows = valuations().all(|valuation| !one.holds(valuation) || other.holds(valuation));
         prop_assert_eq!(logic.together(&[Claim::Holds(&first), Claim::IsFalse(&second)]).is_no(), follows);
     }
 }

@@ -9,19 +9,19 @@ use monas::{Agent, ErrorKind, Registry, RunHash, Talws, Timestamp};
 const ACTUATORS: Source<Actuators> = Source::new(0);
 const PACE: Timer = Timer(0);
 
-fn walks(world: &World<'_>) -> GuardResult {
+fn walks(input: &GuardInput<'_>) -> GuardResult {
     all!(
-        world.is_over(PACE),
-        any!(world.is_absent(ACTUATORS), less(world.latest(ACTUATORS)?.head_yaw, 0.5)?)?,
+        input.is_over(PACE),
+        any!(input.is_absent(ACTUATORS), less(input.latest(ACTUATORS)?.head_yaw, 0.5)?)?,
     )
 }
 
 /// `Actuators.head_yaw = Actuators.head_yaw + 0.125`, which has no value before there is a message.
-fn further<'a>(world: &World<'a>) -> Computed<'a> {
-    plus(world.latest(ACTUATORS)?.head_yaw, 0.125)
+fn further<'a>(input: &GuardInput<'a>) -> Computed<'a> {
+    plus(input.latest(ACTUATORS)?.head_yaw, 0.125)
 }
 
-fn down<'a>(_: &World<'a>) -> Computed<'a> {
+fn down<'a>(_: &GuardInput<'a>) -> Computed<'a> {
     given(0.25)
 }
 

@@ -1,7 +1,7 @@
 //! The statechart `flat`, flattened. Generated: changes here are lost.
 //!
 //! `State::start` returns the initial state, `State::handle` reacts to an event.
-//! Conditions and actions are methods of `World`.
+//! Conditions and actions are methods of `Host`.
 #![allow(dead_code, clippy::all)] // unused items are allowed, and generated code has one style
 
 /// The external events.
@@ -12,7 +12,7 @@ pub enum Event {
 }
 
 /// The conditions and actions of the chart.
-pub trait World {
+pub trait Host {
     /// The action `enter 0`
     fn enter_0(&mut self);
     /// The action `leave 0`
@@ -34,23 +34,23 @@ pub enum State {
 
 impl State {
     /// The initial state.
-    pub fn start(world: &mut impl World) -> State {
-        world.enter_0();
+    pub fn start(host: &mut impl Host) -> State {
+        host.enter_0();
         State::S0
     }
 
     /// Reacts to an event.
     #[inline]
-    pub fn handle(&mut self, event: Event, world: &mut impl World) {
+    pub fn handle(&mut self, event: Event, host: &mut impl Host) {
         match (*self, event) {
             (State::S0, Event::Toggle) => {
-                world.leave_0();
-                world.enter_1();
+                host.leave_0();
+                host.enter_1();
                 *self = State::S1;
             }
             (State::S1, Event::Toggle) => {
-                world.leave_1();
-                world.enter_0();
+                host.leave_1();
+                host.enter_0();
                 *self = State::S0;
             }
         }

@@ -1,7 +1,7 @@
 //! The statechart `guarded`, flattened. Generated: changes here are lost.
 //!
 //! `State::start` returns the initial state, `State::handle` reacts to an event.
-//! Conditions and actions are methods of `World`.
+//! Conditions and actions are methods of `Host`.
 #![allow(dead_code, clippy::all)] // unused items are allowed, and generated code has one style
 
 /// The external events.
@@ -12,7 +12,7 @@ pub enum Event {
 }
 
 /// The conditions and actions of the chart.
-pub trait World {
+pub trait Host {
     /// The condition `M.n == 0`
     fn m_n_equals_0(&self) -> bool;
     /// The action `enter 0`
@@ -36,26 +36,26 @@ pub enum State {
 
 impl State {
     /// The initial state.
-    pub fn start(world: &mut impl World) -> State {
-        world.enter_0();
+    pub fn start(host: &mut impl Host) -> State {
+        host.enter_0();
         State::S0
     }
 
     /// Reacts to an event.
     #[inline]
-    pub fn handle(&mut self, event: Event, world: &mut impl World) {
+    pub fn handle(&mut self, event: Event, host: &mut impl Host) {
         match (*self, event) {
             (State::S0, Event::Toggle) => {
-                if world.m_n_equals_0() {
-                    world.leave_0();
-                    world.enter_1();
+                if host.m_n_equals_0() {
+                    host.leave_0();
+                    host.enter_1();
                     *self = State::S1;
                 }
             }
             (State::S1, Event::Toggle) => {
-                if world.m_n_equals_0() {
-                    world.leave_1();
-                    world.enter_0();
+                if host.m_n_equals_0() {
+                    host.leave_1();
+                    host.enter_0();
                     *self = State::S0;
                 }
             }

@@ -1,7 +1,7 @@
 //! The statechart `guarded`, flattened. Generated: changes here are lost.
 //!
 //! `State::start` returns the initial state, `State::handle` reacts to an event.
-//! Conditions and actions are methods of `World`.
+//! Conditions and actions are methods of `Host`.
 #![allow(dead_code, clippy::all)] // unused items are allowed, and generated code has one style
 
 /// The external events.
@@ -12,7 +12,7 @@ pub enum Event {
 }
 
 /// The conditions and actions of the chart.
-pub trait World {
+pub trait Host {
     /// The condition `M.n > 100`
     fn m_n_above_100(&self) -> bool;
     /// The condition `M.n > 101`
@@ -54,134 +54,134 @@ pub enum State {
 
 impl State {
     /// The initial state.
-    pub fn start(world: &mut impl World) -> State {
-        world.enter_0();
+    pub fn start(host: &mut impl Host) -> State {
+        host.enter_0();
         State::S0
     }
 
     /// Reacts to an event.
     #[inline]
-    pub fn handle(&mut self, event: Event, world: &mut impl World) {
+    pub fn handle(&mut self, event: Event, host: &mut impl Host) {
         match (*self, event) {
             (State::S0, Event::Toggle) => {
-                if world.m_n_above_100() {
-                    world.leave_0();
-                    world.enter_1();
+                if host.m_n_above_100() {
+                    host.leave_0();
+                    host.enter_1();
                     *self = State::S1;
                     return;
                 }
-                if world.m_n_above_101() {
-                    world.leave_0();
-                    world.enter_1();
+                if host.m_n_above_101() {
+                    host.leave_0();
+                    host.enter_1();
                     *self = State::S1;
                     return;
                 }
-                if world.m_n_above_102() {
-                    world.leave_0();
-                    world.enter_1();
+                if host.m_n_above_102() {
+                    host.leave_0();
+                    host.enter_1();
                     *self = State::S1;
                     return;
                 }
-                if world.m_n_above_103() {
-                    world.leave_0();
-                    world.enter_1();
+                if host.m_n_above_103() {
+                    host.leave_0();
+                    host.enter_1();
                     *self = State::S1;
                     return;
                 }
-                if world.m_n_above_104() {
-                    world.leave_0();
-                    world.enter_1();
+                if host.m_n_above_104() {
+                    host.leave_0();
+                    host.enter_1();
                     *self = State::S1;
                     return;
                 }
-                if world.m_n_above_105() {
-                    world.leave_0();
-                    world.enter_1();
+                if host.m_n_above_105() {
+                    host.leave_0();
+                    host.enter_1();
                     *self = State::S1;
                     return;
                 }
-                if world.m_n_above_106() {
-                    world.leave_0();
-                    world.enter_1();
+                if host.m_n_above_106() {
+                    host.leave_0();
+                    host.enter_1();
                     *self = State::S1;
                     return;
                 }
-                if world.m_n_above_107() {
-                    world.leave_0();
-                    world.enter_1();
+                if host.m_n_above_107() {
+                    host.leave_0();
+                    host.enter_1();
                     *self = State::S1;
                     return;
                 }
-                if world.m_n_above_108() {
-                    world.leave_0();
-                    world.enter_1();
+                if host.m_n_above_108() {
+                    host.leave_0();
+                    host.enter_1();
                     *self = State::S1;
                     return;
                 }
-                if world.m_n_equals_0() {
-                    world.leave_0();
-                    world.enter_1();
+                if host.m_n_equals_0() {
+                    host.leave_0();
+                    host.enter_1();
                     *self = State::S1;
                 }
             }
             (State::S1, Event::Toggle) => {
-                if world.m_n_above_100() {
-                    world.leave_1();
-                    world.enter_0();
+                if host.m_n_above_100() {
+                    host.leave_1();
+                    host.enter_0();
                     *self = State::S0;
                     return;
                 }
-                if world.m_n_above_101() {
-                    world.leave_1();
-                    world.enter_0();
+                if host.m_n_above_101() {
+                    host.leave_1();
+                    host.enter_0();
                     *self = State::S0;
                     return;
                 }
-                if world.m_n_above_102() {
-                    world.leave_1();
-                    world.enter_0();
+                if host.m_n_above_102() {
+                    host.leave_1();
+                    host.enter_0();
                     *self = State::S0;
                     return;
                 }
-                if world.m_n_above_103() {
-                    world.leave_1();
-                    world.enter_0();
+                if host.m_n_above_103() {
+                    host.leave_1();
+                    host.enter_0();
                     *self = State::S0;
                     return;
                 }
-                if world.m_n_above_104() {
-                    world.leave_1();
-                    world.enter_0();
+                if host.m_n_above_104() {
+                    host.leave_1();
+                    host.enter_0();
                     *self = State::S0;
                     return;
                 }
-                if world.m_n_above_105() {
-                    world.leave_1();
-                    world.enter_0();
+                if host.m_n_above_105() {
+                    host.leave_1();
+                    host.enter_0();
                     *self = State::S0;
                     return;
                 }
-                if world.m_n_above_106() {
-                    world.leave_1();
-                    world.enter_0();
+                if host.m_n_above_106() {
+                    host.leave_1();
+                    host.enter_0();
                     *self = State::S0;
                     return;
                 }
-                if world.m_n_above_107() {
-                    world.leave_1();
-                    world.enter_0();
+                if host.m_n_above_107() {
+                    host.leave_1();
+                    host.enter_0();
                     *self = State::S0;
                     return;
                 }
-                if world.m_n_above_108() {
-                    world.leave_1();
-                    world.enter_0();
+                if host.m_n_above_108() {
+                    host.leave_1();
+                    host.enter_0();
                     *self = State::S0;
                     return;
                 }
-                if world.m_n_equals_0() {
-                    world.leave_1();
-                    world.enter_0();
+                if host.m_n_equals_0() {
+                    host.leave_1();
+                    host.enter_0();
                     *self = State::S0;
                 }
             }

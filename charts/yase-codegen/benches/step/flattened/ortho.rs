@@ -1,7 +1,7 @@
 //! The statechart `ortho`, flattened. Generated: changes here are lost.
 //!
 //! `State::start` returns the initial state, `State::handle` reacts to an event.
-//! Conditions and actions are methods of `World`.
+//! Conditions and actions are methods of `Host`.
 #![allow(dead_code, clippy::all)] // unused items are allowed, and generated code has one style
 
 /// The external events.
@@ -12,7 +12,7 @@ pub enum Event {
 }
 
 /// The conditions and actions of the chart.
-pub trait World {
+pub trait Host {
     /// The action `enter 0`
     fn enter_0(&mut self);
     /// The action `leave 0`
@@ -50,33 +50,33 @@ pub enum State {
 
 impl State {
     /// The initial state.
-    pub fn start(world: &mut impl World) -> State {
-        world.enter_0();
-        world.enter_1();
-        world.enter_2();
+    pub fn start(host: &mut impl Host) -> State {
+        host.enter_0();
+        host.enter_1();
+        host.enter_2();
         State::S0S1S2
     }
 
     /// Reacts to an event.
     #[inline]
-    pub fn handle(&mut self, event: Event, world: &mut impl World) {
+    pub fn handle(&mut self, event: Event, host: &mut impl Host) {
         match (*self, event) {
             (State::S0S1S2, Event::Toggle) => {
-                world.leave_0();
-                world.enter_3();
-                world.leave_1();
-                world.enter_4();
-                world.leave_2();
-                world.enter_5();
+                host.leave_0();
+                host.enter_3();
+                host.leave_1();
+                host.enter_4();
+                host.leave_2();
+                host.enter_5();
                 *self = State::S3S4S5;
             }
             (State::S3S4S5, Event::Toggle) => {
-                world.leave_3();
-                world.enter_0();
-                world.leave_4();
-                world.enter_1();
-                world.leave_5();
-                world.enter_2();
+                host.leave_3();
+                host.enter_0();
+                host.leave_4();
+                host.enter_1();
+                host.leave_5();
+                host.enter_2();
                 *self = State::S0S1S2;
             }
         }

@@ -172,19 +172,19 @@ pub(crate) fn said(text: &str, diagnostics: &[Diagnostic]) -> Vec<String> {
 
 /// Fields that have arrived, timers, and active states.
 #[derive(Default)]
-pub(crate) struct World {
+pub(crate) struct TestContext {
     fields: BTreeMap<(MessageSource, Vec<FieldId>), Value<'static>>,
     timers: BTreeMap<TimerId, TimerState>,
     active: BTreeSet<NodeId>,
     pub(crate) calls: std::cell::RefCell<Vec<(FunctionId, String)>>,
 }
 
-impl World {
-    pub(crate) fn new() -> World {
-        World::default()
+impl TestContext {
+    pub(crate) fn new() -> TestContext {
+        TestContext::default()
     }
 
-    pub(crate) fn with(self, topic: TopicId, path: &[FieldId], value: Value<'static>) -> World {
+    pub(crate) fn with(self, topic: TopicId, path: &[FieldId], value: Value<'static>) -> TestContext {
         self.with_from(Origin::Own, topic, path, value)
     }
 
@@ -194,17 +194,17 @@ impl World {
         topic: TopicId,
         path: &[FieldId],
         value: Value<'static>,
-    ) -> World {
+    ) -> TestContext {
         self.fields.insert((MessageSource { topic, origin }, path.to_vec()), value);
         self
     }
 
-    pub(crate) fn with_timer(mut self, timer: u32, state: TimerState) -> World {
+    pub(crate) fn with_timer(mut self, timer: u32, state: TimerState) -> TestContext {
         self.timers.insert(TimerId(timer), state);
         self
     }
 
-    pub(crate) fn with_active(mut self, state: u32) -> World {
+    pub(crate) fn with_active(mut self, state: u32) -> TestContext {
         self.active.insert(NodeId(state));
         self
     }
@@ -215,7 +215,7 @@ impl World {
     }
 }
 
-impl EvalContext for World {
+impl EvalContext for TestContext {
     fn field(&self, source: &MessageSource, path: &[FieldId]) -> Value<'_> {
         self.fields.get(&(source.clone(), path.to_vec())).copied().unwrap_or(Value::Missing)
     }
