@@ -32,7 +32,7 @@ fn the_module_of_a_model_is_written_where_it_is_included_from() {
     let module = fs::read_to_string(file).expect("it is there");
     assert!(module.ends_with(&format!("#[path = {library:?}]\npub mod goalie;\n")), "{module}");
     let guards = fs::read_to_string(folder.join("goalie/src/guards.rs")).expect("it is there");
-    assert!(guards.contains("holds(world.latest(messages::BALL)?.approaching)"), "{guards}");
+    assert!(guards.contains("holds(input.latest(messages::BALL)?.approaching)"), "{guards}");
 }
 
 #[test]

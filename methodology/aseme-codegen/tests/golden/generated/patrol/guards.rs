@@ -3,8 +3,8 @@
 #![allow(non_snake_case)] // the names are those of states
 
 use ::yase_codegen::typed::{
-    CallError, Computed, GuardResult, Value, GuardInput, all, any, at_most, attempt, differ, given, holds, inside,
-    inside_mut, more, negative, over, plus, set,
+    CallError, Computed, GuardInput, GuardResult, Value, all, any, at_most, attempt, differ, given, holds,
+    inside, inside_mut, more, negative, over, plus, set,
 };
 
 use super::states::State;
