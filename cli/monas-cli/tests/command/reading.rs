@@ -3,7 +3,8 @@
 //! The lines of a block of the language `sh` are executed one after the other, in a separate
 //! folder. A line that ends with ` &` runs in the background until the end of the chapter, and `#
 //! ends with 3` gives the exit code of a command that fails. The lines of a following `text` block
-//! must occur in the output. A block with the name of a file (`xml robot.xml`) is written to that
+//! must occur in the output; commands that only look at a run are repeated until they do, since
+//! the run has just begun. A block with the name of a file (`xml robot.xml`) is written to that
 //! file first.
 
 use std::fs;
@@ -11,6 +12,12 @@ use std::process::Command;
 
 use crate::kit::{Answer, root};
 use crate::running::{Running, in_folder};
+
+/// Commands that only look at a run.
+const LOOKING: [&str; 3] = ["monas chart show ", "monas topic list ", "monas agent list"];
+
+/// How often commands that only look are repeated at most.
+const REPETITIONS: usize = 20;
 
 /// The blocks of a chapter.
 enum Block {
@@ -40,8 +47,9 @@ fn blocks(chapter: &str) -> Vec<Block> {
 pub(crate) struct Reading {
     pub(crate) folder: tempfile::TempDir,
     background: Vec<Running>,
-    /// The output of the last block.
+    /// The output of the last block, and its commands that only look.
     said: String,
+    looking: Vec<String>,
     /// The hashes of all runs so far.
     pub(crate) hashes: Vec<String>,
     commands: usize,
@@ -79,10 +87,18 @@ impl Reading {
             }
             Block::Commands(lines) => {
                 self.said.clear();
+                self.looking.clone_from(&lines);
+                self.looking.retain(|line| LOOKING.iter().any(|command| line.starts_with(command)));
                 lines.iter().for_each(|line| self.run(line));
             }
             Block::Shown(_) if self.commands == 0 => {}
             Block::Shown(lines) => {
+                for _ in 0..REPETITIONS {
+                    if lines.iter().all(|line| self.said.contains(line.trim())) {
+                        break;
+                    }
+                    self.looking.clone().iter().for_each(|line| self.run(line));
+                }
                 for line in lines {
                     assert!(self.said.contains(line.trim()), "`{line}` is not in\n{}", self.said);
                 }
@@ -94,8 +110,14 @@ impl Reading {
 /// Runs a chapter with at least this many commands in a folder.
 pub(crate) fn read_in(folder: tempfile::TempDir, name: &str, least: usize) -> Reading {
     let chapter = fs::read_to_string(root().join("docs").join(name)).expect("the chapter");
-    let mut reading =
-        Reading { folder, background: Vec::new(), said: String::new(), hashes: Vec::new(), commands: 0 };
+    let mut reading = Reading {
+        folder,
+        background: vec![],
+        said: String::new(),
+        looking: vec![],
+        hashes: vec![],
+        commands: 0,
+    };
     blocks(&chapter).into_iter().for_each(|block| reading.read(block));
     assert!(reading.commands >= least, "{name} has its commands");
     for running in reading.background.drain(..) {
