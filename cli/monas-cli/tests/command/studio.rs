@@ -183,6 +183,10 @@ fn what_a_person_decides_as_the_referee_is_recorded_and_replayed() {
     {
         call(message);
     }
+    // The field takes calls at its next step: it has made some when it says again where all are.
+    let steps = ["topic", "echo", "sim/truth", "--host", "field", "--count", "3"];
+    let seen: Answer = in_folder(folder.path(), &steps).output().expect("the command starts").into();
+    assert_eq!(seen.code, Some(0), "{seen:?}");
     run.interrupt();
     let incidents = monas(&["tape", "export", tape, "--topic", "sim/incident"]).out;
     assert!(incidents.contains("refused call PLAY: play cannot follow initial"), "{incidents}");
