@@ -385,8 +385,11 @@ impl MatchPlan {
 
     fn start_in(mut self, time: MatchTime, options: MatchOptions) -> Result<RunningMatch, Error> {
         let (length, files, settings) = (self.length(), self.files.clone(), self.settings.clone());
-        let hosts: Vec<String> = self.robots.iter().map(|robot| robot.host.clone()).collect();
         let addresses = self.addresses.take();
+        let is_elsewhere =
+            |robot: &&RobotPlan| matches!(time, MatchTime::Real) && addresses.is_some() && robot.has_process;
+        let here = self.robots.iter().filter(|robot| !is_elsewhere(robot));
+        let hosts: Vec<String> = here.map(|robot| robot.host.clone()).collect();
         let parts =
             self.set_up(options.seed, |robot, simulated, index| match (time, simulated, &addresses) {
                 (MatchTime::Real, Some(simulated), Some(address)) if robot.has_process => {

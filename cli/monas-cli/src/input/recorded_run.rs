@@ -26,6 +26,8 @@ pub(crate) struct RecordedRun {
     settings: String,
     /// The folder of the configuration, if paths depend on it.
     folder: Option<String>,
+    /// The hosts whose agents ran: those of other robots of a match may have had other processes.
+    robots: Vec<String>,
     time: TimeMode,
 }
 
@@ -73,11 +75,13 @@ fn description(overview: &TapeOverview) -> Result<RecordedRun, String> {
     };
     let settings = facts.get(monas_recording::SETTINGS).cloned().unwrap_or_default();
     let folder = facts.get(monas_recording::FOLDER).cloned();
+    let robots = fact("robots")?.split(' ').map(str::to_owned).collect();
     Ok(RecordedRun {
         version: fact("version")?,
         configuration: fact("configuration")?,
         settings,
         folder,
+        robots,
         time,
     })
 }
@@ -130,6 +134,12 @@ impl RecordedRun {
         }
     }
 
+    /// The hosts whose agents ran.
+    fn present(&self, mut hosts: Vec<HostConfig>) -> Vec<HostConfig> {
+        hosts.retain(|host| self.robots.contains(&host.name));
+        hosts
+    }
+
     /// Warns if the versions differ.
     pub(crate) fn warn(&self, err: &mut dyn Write) -> io::Result<()> {
         let ours = env!("CARGO_PKG_VERSION");
@@ -149,7 +159,7 @@ pub(crate) fn chosen_hosts(
     format: Format,
 ) -> Result<Vec<HostConfig>, CommandFailure> {
     let hosts = match config {
-        Some(path) => load(path, "", format)?,
+        Some(path) => run.present(load(path, "", format)?),
         None => configured(recording, run, format)?,
     };
     choose(hosts, agents)
@@ -192,7 +202,7 @@ fn configured(
     let folder = tempfile::tempdir().map_err(|error| CommandFailure::failed(format, error))?;
     let files = files(recording, run).map_err(failed(format))?;
     let path = files.unpack(folder.path()).map_err(|error| CommandFailure::failed(format, error))?;
-    load(&path, &run.settings, format)
+    Ok(run.present(load(&path, &run.settings, format)?))
 }
 
 /// The recorded configuration.

@@ -40,7 +40,8 @@ fn await_processes(folder: &Path, count: usize) -> Vec<(String, u32)> {
 #[test]
 fn the_process_of_a_robot_that_is_killed_comes_back_and_the_others_play_on() {
     let folder = tempfile::tempdir().expect("a folder");
-    let mut run = start(folder.path(), &["--for", "14s", "--format", "json"]);
+    let tape = folder.path().join("team.mcap").display().to_string();
+    let mut run = start(folder.path(), &["--for", "14s", "--format", "json", "--record", &tape]);
     let robots = await_processes(folder.path(), 3);
     // They are runs, which tools reach by name.
     let seen =
@@ -70,6 +71,10 @@ fn the_process_of_a_robot_that_is_killed_comes_back_and_the_others_play_on() {
         assert!(delay < 1.5 * period, "{host}: {bodies:?}");
     }
     assert_eq!(processes(folder.path()), [], "all have ended with the match");
+    // The recording has what passed in the process of the match.
+    let verified = monas(&["tape", "verify", &tape]);
+    assert_eq!(verified.code, Some(0), "{verified:?}");
+    assert!(verified.out.contains("of 3 agents replayed"), "{verified:?}");
 }
 
 #[cfg(target_os = "linux")]
