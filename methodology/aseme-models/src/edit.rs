@@ -23,6 +23,7 @@
 //! ```
 
 mod chart_edit;
+mod complete;
 mod item_edit;
 mod outline;
 mod role_edit;
@@ -36,6 +37,7 @@ use yase::Span;
 use crate::convert::{KINDS, first_word};
 use crate::xmi;
 
+pub use complete::{Completion, Completions, ProgramNames, completions, expression_completions};
 pub use outline::{
     ClassOutline, EntryOutline, FieldKind, FieldOutline, ItemOutline, ModelOutline, StateOutline,
     TransitionOutline, outline,
