@@ -163,7 +163,7 @@ impl Session for TapeSession {
                 self.sent = None;
             }
             ViewerRequest::Unwatch => self.watched = None,
-            ViewerRequest::Live => {}
+            ViewerRequest::Live | ViewerRequest::Model(..) => {}
             ViewerRequest::Control(id, _) => {
                 let reason = "a tape cannot be changed";
                 return Some(json!({"type": "reply", "id": id, "done": false, "reason": reason}));

@@ -1,7 +1,9 @@
 //! `monas studio`: a view of a run or of a tape in the browser.
 
+mod linked_language;
 #[cfg(feature = "soccer")]
 mod soccer_field;
+mod text_positions;
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -52,11 +54,29 @@ pub(crate) struct ListenArgument {
     /// only look.
     #[arg(long)]
     allow_control: bool,
+    /// Let pages edit this model, or the models in this folder: as text, in the drawing of its
+    /// chart, and in forms. May be given several times. Pages of other computers can save only with
+    /// --allow-control.
+    #[arg(long = "edit", value_name = "PATH", value_hint = ValueHint::AnyPath)]
+    models: Vec<PathBuf>,
 }
 
 impl ListenArgument {
+    fn settings(&self, format: Format) -> Result<StudioSettings, CommandFailure> {
+        let ListenArgument { listen, origins, allow_control, models } = self.clone();
+        let models = linked_language::workspace(&models, format)?;
+        Ok(StudioSettings { listen, origins, allows_control: allow_control, models, ..StudioSettings::default() })
+    }
+
     pub(crate) fn is_given(&self) -> bool {
-        self.listen.is_some() || !self.origins.is_empty() || self.allow_control
+        self.listen.is_some() || !self.origins.is_empty() || self.allow_control || !self.models.is_empty()
+    }
+}
+
+impl StudioArguments {
+    /// Whether models are edited and no run is asked for.
+    fn is_without_run(&self) -> bool {
+        !self.listen.models.is_empty() && self.run.is_none() && !self.listen.allow_control
     }
 }
 
@@ -68,12 +88,13 @@ pub(crate) fn execute(
     let format = arguments.format.value;
     let interrupt = Interrupt::for_console(console).map_err(|error| CommandFailure::failed(format, error))?;
     let _studio = match &arguments.tape {
-        Some(_) if arguments.listen.allow_control => {
+        Some(_) if arguments.listen.allow_control && arguments.listen.models.is_empty() => {
             return Err(CommandFailure::Usage(
                 "--allow-control is for a run; a tape cannot be changed".into(),
             ));
         }
         Some(tape) => serve_tape(tape, arguments.beside.as_deref(), &arguments.listen, format, console)?,
+        None if arguments.is_without_run() => serve_models(&arguments.listen, format, console)?,
         None => {
             let selector = RunSelector::of(arguments.run.clone(), None, arguments.format);
             serve(&connection::socket(&selector)?, &arguments.listen, None, format, console)?
@@ -92,10 +113,19 @@ pub(crate) fn serve(
     format: Format,
     console: &mut CommandOutput<'_>,
 ) -> Result<Studio, CommandFailure> {
-    let ListenArgument { listen, origins, allow_control } = listen.clone();
-    let settings = StudioSettings { listen, scene: scene(), pace, origins, allows_control: allow_control };
+    let settings = StudioSettings { scene: scene(), pace, ..listen.settings(format)? };
     let studio = Studio::of_run(socket, settings).map_err(|error| CommandFailure::failed(format, error))?;
     announce(studio, console)
+}
+
+/// Serves models without a run.
+fn serve_models(
+    listen: &ListenArgument,
+    format: Format,
+    console: &mut CommandOutput<'_>,
+) -> Result<Studio, CommandFailure> {
+    let studio = Studio::of_models(listen.settings(format)?);
+    announce(studio.map_err(|error| CommandFailure::failed(format, error))?, console)
 }
 
 fn announce(studio: Studio, console: &mut CommandOutput<'_>) -> Result<Studio, CommandFailure> {
@@ -113,7 +143,7 @@ fn serve_tape(
     console: &mut CommandOutput<'_>,
 ) -> Result<Studio, CommandFailure> {
     let tape = open_tape(tape, format, console)?;
-    let settings = StudioSettings { listen: listen.listen, ..StudioSettings::default() };
+    let settings = listen.settings(format)?;
     let studio = match beside {
         None => Studio::of_tape(tape, settings),
         Some(other) => Studio::of_tapes(tape, open_tape(other, format, console)?, settings),
