@@ -51,7 +51,7 @@ struct ModelFile {
 }
 
 impl ModelWorkspace {
-    /// The files at these paths.
+    /// The files at these paths, each once.
     ///
     /// # Errors
     /// A path is no file.
@@ -66,7 +66,13 @@ impl ModelWorkspace {
                 .map(|path| ModelFile { name: name.clone(), path })
                 .map_err(|error| io::Error::new(error.kind(), format!("{name}: {error}")))
         };
-        let files = paths.into_iter().map(file).collect::<io::Result<_>>()?;
+        let mut files: Vec<ModelFile> = Vec::new();
+        for path in paths {
+            let found = file(path)?;
+            if !files.iter().any(|known| known.path == found.path) {
+                files.push(found);
+            }
+        }
         Ok(ModelWorkspace { files, language, saving: Mutex::default() })
     }
 

@@ -5,7 +5,7 @@ use std::net::TcpStream;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-use serde_json::Value;
+use serde_json::{Value, json};
 use tungstenite::protocol::frame::coding::CloseCode;
 use tungstenite::protocol::{CloseFrame, Role, WebSocketConfig};
 use tungstenite::{Message, WebSocket};
@@ -72,6 +72,10 @@ fn exchange(
             let Some(request) = next_request(&mut socket, left)? else { break };
             let reply = match (ViewerRequest::parse(&request), &mut models) {
                 (Some(ViewerRequest::Model(id, request)), Some(models)) => models.handle(id, request),
+                (Some(ViewerRequest::Model(id, _)), None) => {
+                    let reason = "the studio was started without --edit";
+                    Some(json!({"type": "reply", "id": id, "done": false, "reason": reason}))
+                }
                 (Some(request), _) => session.handle(request),
                 (None, _) => None,
             };
