@@ -193,7 +193,9 @@ pub fn edits(source: &str, edit: &ModelEdit) -> Result<Vec<TextEdit>, EditRefusa
     let mut edits = match form(source) {
         TextForm::Foreign => {
             let hint = "convert it: `monas model convert FILE --to text`; the text of the file can be edited";
-            return Err(EditRefusal::new("XMI and SCXML are not edited in drawings and forms").with_hint(hint));
+            return Err(
+                EditRefusal::new("XMI and SCXML are not edited in drawings and forms").with_hint(hint)
+            );
         }
         TextForm::Role => role_edit::edits(&SrmFile::parse(source).0, edit)?,
         TextForm::Chart => chart_edit::edits(source, edit)?,

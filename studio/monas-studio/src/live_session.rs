@@ -106,7 +106,9 @@ impl Session for LiveSession {
                 None
             }
             ViewerRequest::Control(id, request) => Some(self.control(id, request)),
-            ViewerRequest::Why { .. } | ViewerRequest::WhyTransition { .. } | ViewerRequest::Model(..) => None,
+            ViewerRequest::Why { .. } | ViewerRequest::WhyTransition { .. } | ViewerRequest::Model(..) => {
+                None
+            }
         }
     }
 

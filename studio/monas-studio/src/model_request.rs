@@ -61,7 +61,10 @@ mod tests {
     #[test]
     fn requests_are_read_strictly() {
         let read = |value: Value| ModelRequest::read(value).1;
-        assert_eq!(read(json!({"type": "model open", "id": 1, "file": 2})), Ok(ModelRequest::Open { file: 2 }));
+        assert_eq!(
+            read(json!({"type": "model open", "id": 1, "file": 2})),
+            Ok(ModelRequest::Open { file: 2 })
+        );
         for (wrong, word) in [
             (json!({"type": "model open", "file": 2}), "`id`"),
             (json!({"type": "model open", "id": 1, "file": "../x"}), "string"),

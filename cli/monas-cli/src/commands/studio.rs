@@ -65,7 +65,13 @@ impl ListenArgument {
     fn settings(&self, format: Format) -> Result<StudioSettings, CommandFailure> {
         let ListenArgument { listen, origins, allow_control, models } = self.clone();
         let models = linked_language::workspace(&models, format)?;
-        Ok(StudioSettings { listen, origins, allows_control: allow_control, models, ..StudioSettings::default() })
+        Ok(StudioSettings {
+            listen,
+            origins,
+            allows_control: allow_control,
+            models,
+            ..StudioSettings::default()
+        })
     }
 
     pub(crate) fn is_given(&self) -> bool {

@@ -87,7 +87,9 @@ impl<'a> ChartText<'a> {
 
     /// The settings of a node as they are written, without quotes.
     pub(crate) fn state_settings(&self, node: usize) -> Vec<(String, String)> {
-        let plain = |value: &SpannedText| crate::document::unquoted(&value.text).unwrap_or_else(|| value.text.clone());
+        let plain = |value: &SpannedText| {
+            crate::document::unquoted(&value.text).unwrap_or_else(|| value.text.clone())
+        };
         let settings = self.nodes.get(node).map(|lines| lines.settings.as_slice()).unwrap_or_default();
         settings.iter().map(|(key, value)| (key.text.clone(), plain(value))).collect()
     }
@@ -96,7 +98,8 @@ impl<'a> ChartText<'a> {
     pub(crate) fn transition_texts(&self) -> impl Iterator<Item = (Span, String, String)> {
         self.transitions.iter().map(|line| {
             let TransitionLine { modifiers, expression, .. } = &line.parts;
-            let expression = crate::document::unquoted(&expression.text).unwrap_or_else(|| expression.text.clone());
+            let expression =
+                crate::document::unquoted(&expression.text).unwrap_or_else(|| expression.text.clone());
             (line.content.span, expression, modifiers.text.clone())
         })
     }
@@ -108,7 +111,9 @@ impl<'a> ChartText<'a> {
 
     fn node(&self, number: u32) -> Result<usize, EditRefusal> {
         let is_known = (number as usize) < self.nodes.len();
-        is_known.then_some(number as usize).ok_or_else(|| EditRefusal::new(format!("the chart has no state {number}")))
+        is_known
+            .then_some(number as usize)
+            .ok_or_else(|| EditRefusal::new(format!("the chart has no state {number}")))
     }
 
     fn set_transition(&self, number: u32, expression: Option<&str>, modifiers: Option<&str>) -> Edits {
@@ -117,9 +122,13 @@ impl<'a> ChartText<'a> {
         let mut edits = Vec::new();
         if let Some(modifiers) = modifiers {
             let modifiers = format!(" {}", on_one_line(modifiers, "modifiers")?);
-            edits.push(replacement(Span::new(target, parts.modifiers.span.end.max(target)), modifiers.trim_end()));
+            edits.push(replacement(
+                Span::new(target, parts.modifiers.span.end.max(target)),
+                modifiers.trim_end(),
+            ));
         }
-        if let Some(expression) = expression.map(|text| text.split_whitespace().collect::<Vec<_>>().join(" ")) {
+        if let Some(expression) = expression.map(|text| text.split_whitespace().collect::<Vec<_>>().join(" "))
+        {
             let head = parts.modifiers.span.end.max(target);
             edits.push(match (expression.is_empty(), parts.expression.text.is_empty()) {
                 (true, _) => replacement(Span::new(head, content.span.end), ""),
@@ -238,10 +247,13 @@ impl<'a> ChartText<'a> {
         let mut edits = vec![without_lines(self.source, span)];
         let ends = |line: &TransitionLines| {
             let number = self.chart.transitions.iter().position(|it| it.place.0 == line.content.span);
-            number.map(|number| (self.chart.transitions[number].source, self.chart.transitions[number].target))
+            number
+                .map(|number| (self.chart.transitions[number].source, self.chart.transitions[number].target))
         };
         for line in &self.transitions {
-            if ends(line).is_some_and(|(source, target)| self.is_within(source, node) || self.is_within(target, node)) {
+            if ends(line)
+                .is_some_and(|(source, target)| self.is_within(source, node) || self.is_within(target, node))
+            {
                 edits.extend(self.without_transition(line));
             }
         }
@@ -272,8 +284,12 @@ impl<'a> ChartText<'a> {
         edits.sort_by_key(|edit| edit.span);
         let text = super::applied(self.source, &edits);
         let changed = ChartText::new(&text);
-        let places: BTreeMap<usize, usize> =
-            changed.nodes.iter().enumerate().map(|(index, lines)| (lines.content.span.start, index)).collect();
+        let places: BTreeMap<usize, usize> = changed
+            .nodes
+            .iter()
+            .enumerate()
+            .map(|(index, lines)| (lines.content.span.start, index))
+            .collect();
         let moved = |node: usize| places.get(&shifted(&edits, self.nodes[node].content.span.start)?).copied();
         let paths = NodePaths::new(&changed.chart);
         let mut more = Vec::new();
@@ -322,7 +338,8 @@ fn node_lines(document: &ItemDocument, chart: &Iac) -> Vec<NodeLines> {
                 }
             }
             (None, Some(&node)) => {
-                nodes[node] = NodeLines { indent: line.indent, content: line.content.clone(), settings: Vec::new() };
+                nodes[node] =
+                    NodeLines { indent: line.indent, content: line.content.clone(), settings: Vec::new() };
                 open.push((line.indent, node));
             }
             (None, None) => {}
@@ -356,7 +373,8 @@ fn lines<'a>(document: &'a ItemDocument, word: &'a str) -> impl Iterator<Item = 
 fn known_kind(kind: &str) -> Result<&'static str, EditRefusal> {
     KINDS.into_iter().map(kind_word).find(|known| *known == kind).ok_or_else(|| {
         let kinds: Vec<&str> = KINDS.into_iter().map(kind_word).collect();
-        EditRefusal::new(format!("`{kind}` is no kind of node")).with_hint(format!("kinds are {}", kinds.join(", ")))
+        EditRefusal::new(format!("`{kind}` is no kind of node"))
+            .with_hint(format!("kinds are {}", kinds.join(", ")))
     })
 }
 

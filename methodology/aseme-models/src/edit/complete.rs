@@ -264,7 +264,10 @@ impl Words<'_> {
             }
             Zone::Guard => self.condition(word, chart),
             Zone::Action => {
-                self.all("action", ["StartTimeout(", "raise(", "publish.", "process_messages", "publish_all"]);
+                self.all(
+                    "action",
+                    ["StartTimeout(", "raise(", "publish.", "process_messages", "publish_all"],
+                );
                 self.condition(word, chart);
             }
         }
@@ -274,7 +277,9 @@ impl Words<'_> {
         let compared = before.trim_end();
         if let Some(left) = compared.strip_suffix("==").or(compared.strip_suffix("!=")) {
             let path = left.trim_end();
-            let path = &path[path.trim_end_matches(|letter: char| text::is_name_character(letter) || letter == '.').len()..];
+            let path = &path[path
+                .trim_end_matches(|letter: char| text::is_name_character(letter) || letter == '.')
+                .len()..];
             if let Some(ValueType::Enumeration(name)) = self.type_of(path) {
                 return self.values_of(&name);
             }
@@ -286,7 +291,9 @@ impl Words<'_> {
         }
         let timers: BTreeSet<String> = chart
             .transitions()
-            .flat_map(|(_, it)| it.expression.started_timers().map(|timer| timer.to_string()).collect::<Vec<_>>())
+            .flat_map(|(_, it)| {
+                it.expression.started_timers().map(|timer| timer.to_string()).collect::<Vec<_>>()
+            })
             .collect();
         timers.into_iter().for_each(|timer| self.add("timer", timer, ""));
         for function in &self.names.environment.functions {
@@ -340,7 +347,8 @@ impl Words<'_> {
     }
 
     fn fields(&mut self, owner: &str) {
-        let path = &owner[owner.trim_end_matches(|letter: char| text::is_name_character(letter) || letter == '.').len()..];
+        let path = &owner
+            [owner.trim_end_matches(|letter: char| text::is_name_character(letter) || letter == '.').len()..];
         if path == "publish" {
             return self.messages();
         }
@@ -355,9 +363,12 @@ impl Words<'_> {
     fn type_of(&self, path: &str) -> Option<ValueType> {
         let mut segments = path.split('.');
         let first = segments.next()?;
-        let topic = self.names.environment.topics.iter().find(|topic| {
-            topic.message == first || topic.path.rsplit('/').next() == Some(first)
-        });
+        let topic = self
+            .names
+            .environment
+            .topics
+            .iter()
+            .find(|topic| topic.message == first || topic.path.rsplit('/').next() == Some(first));
         let mut kind = ValueType::Message(topic?.message.clone());
         for segment in segments {
             let ValueType::Message(name) = &kind else { return None };
@@ -424,16 +435,16 @@ fn type_word(kind: &ValueType) -> String {
 
 #[cfg(test)]
 mod tests {
-    use yase::vocabulary::{Enumeration, FieldEntry, FieldId, FunctionEntry, FunctionId, TopicEntry, TopicId, TopicKind};
+    use yase::vocabulary::{
+        Enumeration, FieldEntry, FieldId, FunctionEntry, FunctionId, TopicEntry, TopicId, TopicKind,
+    };
 
     use super::*;
 
     fn environment() -> TypeEnvironment {
         let field = |id, name: &str, kind| FieldEntry { id: FieldId(id), name: name.into(), kind };
-        let ball = vec![
-            field(0, "found", ValueType::Bool),
-            field(1, "side", ValueType::Enumeration("Side".into())),
-        ];
+        let ball =
+            vec![field(0, "found", ValueType::Bool), field(1, "side", ValueType::Enumeration("Side".into()))];
         TypeEnvironment {
             topics: vec![TopicEntry {
                 id: TopicId(0),
@@ -472,11 +483,10 @@ mod tests {
     #[test]
     fn formulas_name_activities_and_formulas() {
         let (word, of) = at("Liveness:\nr = Wa@it . go\ngo = Kick\n");
-        assert_eq!((word.as_str(), of("activity"), of("formula")), (
-            "Wa",
-            vec!["Kick".into(), "Wait".into()],
-            vec!["go".into(), "r".into()],
-        ));
+        assert_eq!(
+            (word.as_str(), of("activity"), of("formula")),
+            ("Wa", vec!["Kick".into(), "Wait".into()], vec!["go".into(), "r".into()],)
+        );
         assert!(at("Liveness:\nr = Wait # no @\n").1("activity").is_empty(), "a comment");
     }
 
@@ -484,7 +494,10 @@ mod tests {
     fn guards_know_messages_fields_values_constants_and_functions() {
         let guard = |text: &str| at(&format!("{ROLE}Transitions:\nCONDITION -> Kick : {text}\n"));
         let (word, of) = guard("[Ba@");
-        assert_eq!((word.as_str(), of("message"), of("constant")), ("Ba", vec!["Ball".into()], vec!["near".into()]));
+        assert_eq!(
+            (word.as_str(), of("message"), of("constant")),
+            ("Ba", vec!["Ball".into()], vec!["near".into()])
+        );
         assert_eq!(of("function"), ["abs("]);
         let (word, of) = guard("[near < 1 && Ball.fo@]");
         assert_eq!((word.as_str(), of("field")), ("fo", vec!["found".to_owned(), "side".to_owned()]));

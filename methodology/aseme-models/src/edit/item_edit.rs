@@ -10,7 +10,9 @@ use super::{
     replacement, without_lines,
 };
 use crate::convert::first_word;
-use crate::document::{Item, ItemDocument, KeyValue, Reference, list, reference, settings, unquoted, value_text};
+use crate::document::{
+    Item, ItemDocument, KeyValue, Reference, list, reference, settings, unquoted, value_text,
+};
 use crate::functionality::FunctionalityTable;
 use crate::meta::{Class, Feature, FeatureKind, Metamodel, TypedModel};
 use crate::{Aip, Sag, Suc, SystemRoles};
@@ -80,7 +82,9 @@ impl<'a> FormText<'a> {
             return self.rename(index, item, class, value.unwrap_or_default());
         }
         let feature = class.features.iter().enumerate().find(|(place, feature)| {
-            feature.word == key && *place != class.title && !matches!(feature.kind, FeatureKind::Opposite { .. })
+            feature.word == key
+                && *place != class.title
+                && !matches!(feature.kind, FeatureKind::Opposite { .. })
         });
         let Some((_, feature)) = feature else {
             return Err(EditRefusal::new(format!("a {} has no `{key}`", class.word)));
@@ -100,7 +104,11 @@ impl<'a> FormText<'a> {
                         insertion(line_content_end(self.source, setting.value.span.end), format!(" {value}"))
                     }
                     Some(setting) => replacement(setting.value.span, value),
-                    None => line_below(self.source, last_line(item), &format!("{:1$}{key} = {value}", "", indent(item))),
+                    None => line_below(
+                        self.source,
+                        last_line(item),
+                        &format!("{:1$}{key} = {value}", "", indent(item)),
+                    ),
                 }])
             }
         }
@@ -147,7 +155,8 @@ impl<'a> FormText<'a> {
         let old: Vec<&str> = lines.iter().map(|line| line.content.text.as_str()).collect();
         let same = old.iter().zip(&new).take_while(|(old, new)| old == new).count();
         let most = (old.len() - same).min(new.len() - same);
-        let end = old.iter().rev().zip(new.iter().rev()).take(most).take_while(|(old, new)| old == new).count();
+        let end =
+            old.iter().rev().zip(new.iter().rev()).take(most).take_while(|(old, new)| old == new).count();
         let (replaced, given) = (&lines[same..lines.len() - end], &new[same..new.len() - end]);
         let mut edits = Vec::new();
         for (line, text) in replaced.iter().zip(given) {
@@ -207,7 +216,10 @@ impl<'a> FormText<'a> {
     fn add_item(&self, word: &str, name: &str) -> Edits {
         let class = self.metamodel.classes.iter().find(|class| class.word == word);
         let Some(class) = class else {
-            return Err(EditRefusal::new(format!("a model of the kind {} has no `{word}`", self.metamodel.word)));
+            return Err(EditRefusal::new(format!(
+                "a model of the kind {} has no `{word}`",
+                self.metamodel.word
+            )));
         };
         let header = match name.trim() {
             "" if self.metamodel.is_linked(class) => {
@@ -220,7 +232,10 @@ impl<'a> FormText<'a> {
         let same = self.document.items.iter().rfind(|item| item.word.text == word);
         Ok(vec![match same.or(self.document.items.last()) {
             Some(item) => line_below(self.source, last_line(item), &format!("{ending}{header}")),
-            None => insertion(self.source.len(), format!("{}:{ending}{ending}{header}{ending}", self.metamodel.word)),
+            None => insertion(
+                self.source.len(),
+                format!("{}:{ending}{ending}{header}{ending}", self.metamodel.word),
+            ),
         }])
     }
 
@@ -232,8 +247,11 @@ impl<'a> FormText<'a> {
         let mut end = self.source.len() - after.strip_prefix('\n').unwrap_or(after).len();
         // one of two empty lines
         let rest = &self.source[end..];
-        let is_empty_before = start == 0 || self.source[..start].ends_with("\n\n") || self.source[..start].ends_with("\r\n\r\n");
-        if let (true, Some(blank)) = (is_empty_before, rest.strip_prefix('\n').or(rest.strip_prefix("\r\n"))) {
+        let is_empty_before = start == 0
+            || self.source[..start].ends_with("\n\n")
+            || self.source[..start].ends_with("\r\n\r\n");
+        if let (true, Some(blank)) = (is_empty_before, rest.strip_prefix('\n').or(rest.strip_prefix("\r\n")))
+        {
             end = self.source.len() - blank.len();
         }
         Ok(vec![replacement(Span::new(start, end), "")])

@@ -30,10 +30,10 @@ pub(crate) fn edits(file: &SrmFile, edit: &ModelEdit) -> Edits {
         ModelEdit::SetState { state, key, value } => role.set_state(*state, key, value.as_deref()),
         ModelEdit::SetEntry { entry, text } => role.set_entry(*entry, text.as_deref()),
         ModelEdit::AddEntry { section, text } => role.add_entry(section, text),
-        ModelEdit::AddState { .. } | ModelEdit::RemoveState { .. } => {
-            Err(EditRefusal::new("the states of a role are those of its formulas")
-                .with_hint("edit the formula, or make a chart of the role: `monas model convert FILE --to text`"))
-        }
+        ModelEdit::AddState { .. } | ModelEdit::RemoveState { .. } => Err(EditRefusal::new(
+            "the states of a role are those of its formulas",
+        )
+        .with_hint("edit the formula, or make a chart of the role: `monas model convert FILE --to text`")),
         ModelEdit::SetField { .. } | ModelEdit::AddItem { .. } | ModelEdit::RemoveItem { .. } => {
             Err(EditRefusal::new("the text of a role has entries, not items"))
         }
@@ -67,7 +67,8 @@ impl<'a> RoleText<'a> {
     pub(crate) fn entry_of(&self, id: TransitionId) -> Option<(&'a TransitionEntry, bool)> {
         let index = *self.placed.get(&id)?;
         let entry = &self.file.srm().transitions[index];
-        let is_own = self.placed.values().filter(|&&other| other == index).count() == 1 && !entry.has_wildcard();
+        let is_own =
+            self.placed.values().filter(|&&other| other == index).count() == 1 && !entry.has_wildcard();
         Some((entry, is_own))
     }
 
@@ -126,7 +127,10 @@ impl<'a> RoleText<'a> {
                 edits.push(replacement(parts.expression, format!("{blank}{expression}")));
             }
             (Some(_), Some(_)) => {
-                edits.push(replacement(Span::new(parts.modifiers.end.max(parts.ends.end), entry.span.end), ""));
+                edits.push(replacement(
+                    Span::new(parts.modifiers.end.max(parts.ends.end), entry.span.end),
+                    "",
+                ));
             }
             (Some(expression), None) if !expression.is_empty() => {
                 edits.push(insertion(entry.span.end, format!(" : {expression}")));
@@ -170,7 +174,8 @@ impl<'a> RoleText<'a> {
         let old = self.plain.node(node).name.as_str();
         let name = name.trim();
         if !text::is_name(old) {
-            let message = format!("`{}` is named by a term of the formulas", shortest_path(&self.plain, node));
+            let message =
+                format!("`{}` is named by a term of the formulas", shortest_path(&self.plain, node));
             return Err(EditRefusal::new(message).with_hint("edit the formula, or rename the states in it"));
         }
         if !text::is_name(name) || ["START", "END", "CONDITION"].contains(&name) {
@@ -211,10 +216,13 @@ impl<'a> RoleText<'a> {
         if !has_settings || !text::is_name(key) {
             return Err(EditRefusal::new(format!("this node has no setting `{key}`")));
         }
-        let value = value.map(|value| on_one_line(value, "a value")).transpose()?.filter(|value| !value.is_empty());
+        let value =
+            value.map(|value| on_one_line(value, "a value")).transpose()?.filter(|value| !value.is_empty());
         let is_of_node = |entry: &&StateEntry| {
             let mut nodes = self.plain.nodes().filter(|(id, _)| entry.path.matches(&self.plain, *id));
-            !entry.path.has_wildcard() && nodes.next().is_some_and(|(id, _)| id == node) && nodes.next().is_none()
+            !entry.path.has_wildcard()
+                && nodes.next().is_some_and(|(id, _)| id == node)
+                && nodes.next().is_none()
         };
         let Some(entry) = self.file.srm().states.iter().find(is_of_node) else {
             let Some(value) = value else { return Ok(Vec::new()) };
@@ -253,9 +261,11 @@ impl<'a> RoleText<'a> {
     }
 
     fn add_entry(&self, section: &str, new: &str) -> Edits {
-        let known = [Section::Liveness, Section::Constants, Section::Transitions, Section::States, Section::Layout];
+        let known =
+            [Section::Liveness, Section::Constants, Section::Transitions, Section::States, Section::Layout];
         let found = known.into_iter().find(|known| known.word() == section);
-        let found = found.ok_or_else(|| EditRefusal::new(format!("no section `{section}` has further entries")))?;
+        let found =
+            found.ok_or_else(|| EditRefusal::new(format!("no section `{section}` has further entries")))?;
         match new.trim() {
             "" => Err(EditRefusal::new("the entry is empty")),
             new => Ok(self.new_entry(found, new)),
@@ -283,12 +293,16 @@ impl<'a> RoleText<'a> {
         let later = later.into_iter().skip_while(|other| *other != section).skip(1);
         let next = later.filter_map(|other| self.header(other)).min();
         edits.push(match next {
-            Some(next) => {
-                insertion(line_start(self.text, next), format!("{}:{ending}{line}{ending}{ending}", section.word()))
-            }
+            Some(next) => insertion(
+                line_start(self.text, next),
+                format!("{}:{ending}{line}{ending}{ending}", section.word()),
+            ),
             None => {
                 let begin = if self.text.is_empty() || self.text.ends_with('\n') { "" } else { ending };
-                insertion(self.text.len(), format!("{begin}{ending}{}:{ending}{line}{ending}", section.word()))
+                insertion(
+                    self.text.len(),
+                    format!("{begin}{ending}{}:{ending}{line}{ending}", section.word()),
+                )
             }
         });
         edits

@@ -318,7 +318,8 @@ impl Reader {
 
     fn transition(&mut self, line: &Line, paths: &NodePaths, labels: &[String]) -> Option<usize> {
         let content = &line.content;
-        let Some(TransitionLine { source, target, modifiers, expression: te }) = transition_line(content) else {
+        let Some(TransitionLine { source, target, modifiers, expression: te }) = transition_line(content)
+        else {
             let message = format!("`{}` has no `->`", content.text);
             self.report(
                 Diagnostic::error("E0240", content.span, message)

@@ -20,7 +20,10 @@ fn chart(text: &str) -> Statechart {
 
 /// The text after an edit; all lines but `changed` removed and `added` new ones are as before.
 fn edited(text: &str, edit: &ModelEdit) -> String {
-    applied(text, &edits(text, edit).unwrap_or_else(|refused| panic!("{edit:?}: {refused} {:?}", refused.hint)))
+    applied(
+        text,
+        &edits(text, edit).unwrap_or_else(|refused| panic!("{edit:?}: {refused} {:?}", refused.hint)),
+    )
 }
 
 fn refused(text: &str, edit: &ModelEdit) -> String {
@@ -44,7 +47,12 @@ fn transition(text: &str, target: &str, expression: &str) -> u32 {
         let is_target = if target == "END" { node.kind == NodeKind::End } else { node.name == target };
         is_target && it.expression.to_string().contains(expression)
     };
-    chart.transitions().find(|(_, it)| is_meant(it)).unwrap_or_else(|| panic!("no transition to {target}")).0.0
+    chart
+        .transitions()
+        .find(|(_, it)| is_meant(it))
+        .unwrap_or_else(|| panic!("no transition to {target}"))
+        .0
+        .0
 }
 
 /// The number of the first state of a name.
@@ -64,10 +72,12 @@ fn set(transition: u32, expression: &str) -> ModelEdit {
 fn a_guard_changes_its_own_text_only() {
     let edit = set(transition(ATTACKER, "LeftKick", "Ball.y"), "[Ball.y > 0.01]");
     let after = edited(ATTACKER, &edit);
-    let lines = (vec!["CONDITION -> LeftKick : [Ball.y >= 0]"], vec!["CONDITION -> LeftKick : [Ball.y > 0.01]"]);
+    let lines =
+        (vec!["CONDITION -> LeftKick : [Ball.y >= 0]"], vec!["CONDITION -> LeftKick : [Ball.y > 0.01]"]);
     assert_eq!(difference(ATTACKER, &after), lines);
     // an entry of several lines becomes one
-    let after = edited(ATTACKER, &set(transition(ATTACKER, "kickBall", "kick_x"), "[Ball.distance\n  < near]"));
+    let after =
+        edited(ATTACKER, &set(transition(ATTACKER, "kickBall", "kick_x"), "[Ball.distance\n  < near]"));
     assert_eq!(difference(ATTACKER, &after).1, ["CONDITION -> kickBall : [Ball.distance < near]"]);
     // without an expression
     let after = edited(ATTACKER, &set(transition(ATTACKER, "LeftKick", "Ball.y"), " "));
@@ -101,10 +111,7 @@ fn a_transition_without_an_entry_gets_one() {
     // without sections
     let bare = "# what it does\nlamp = Off . On\n";
     let after = edited(bare, &set(1, "switch"));
-    assert_eq!(
-        after,
-        "# what it does\nLiveness:\nlamp = Off . On\n\nTransitions:\nOff -> On : switch\n"
-    );
+    assert_eq!(after, "# what it does\nLiveness:\nlamp = Off . On\n\nTransitions:\nOff -> On : switch\n");
     assert_eq!(chart(&after).transition(yase::TransitionId(1)).expression.to_string(), "switch");
 }
 
@@ -114,7 +121,9 @@ fn modifiers_and_parallel_transitions() {
     let modifiers = Some("!3 interrupts".to_owned());
     let edit = ModelEdit::SetTransition { transition: kick, expression: None, modifiers };
     let after = edited(EXTENDED, &edit);
-    assert!(difference(EXTENDED, &after).1[0].starts_with("CONDITION -> center !3 interrupts : [Attack.ball"));
+    assert!(
+        difference(EXTENDED, &after).1[0].starts_with("CONDITION -> center !3 interrupts : [Attack.ball")
+    );
     let (source, target) = {
         let chart = chart(ATTACKER);
         let it = chart.transition(yase::TransitionId(transition(ATTACKER, "LeftKick", "Ball.y"))).clone();
@@ -123,14 +132,27 @@ fn modifiers_and_parallel_transitions() {
     let edit = ModelEdit::AddTransition { source, target, expression: "[Ball.speed > 1]".into() };
     let after = edited(ATTACKER, &edit);
     let added = transition(&after, "LeftKick", "speed");
-    assert_eq!(difference(ATTACKER, &after).1, ["kickBall/CONDITION -> LeftKick also : [Ball.speed > 1]"]
-        .map(|line| if difference(ATTACKER, &after).1[0].starts_with("CONDITION") { &line[9..] } else { line }));
+    assert_eq!(
+        difference(ATTACKER, &after).1,
+        ["kickBall/CONDITION -> LeftKick also : [Ball.speed > 1]"].map(|line| {
+            if difference(ATTACKER, &after).1[0].starts_with("CONDITION") { &line[9..] } else { line }
+        })
+    );
     let removed = edited(&after, &ModelEdit::RemoveTransition { transition: added });
     assert_eq!(removed, ATTACKER);
-    let far = ModelEdit::AddTransition { source: state(ATTACKER, "Stand"), target: state(ATTACKER, "RightKick"), expression: String::new() };
+    let far = ModelEdit::AddTransition {
+        source: state(ATTACKER, "Stand"),
+        target: state(ATTACKER, "RightKick"),
+        expression: String::new(),
+    };
     assert!(refused(ATTACKER, &far).contains("the formulas have no transition from `Stand` to `RightKick`"));
-    assert!(refused(ATTACKER, &ModelEdit::RemoveTransition { transition: transition(ATTACKER, "SendCalibration", "") })
-        .contains("made by the formulas"));
+    assert!(
+        refused(
+            ATTACKER,
+            &ModelEdit::RemoveTransition { transition: transition(ATTACKER, "SendCalibration", "") }
+        )
+        .contains("made by the formulas")
+    );
 }
 
 #[test]
@@ -155,7 +177,8 @@ fn a_state_is_renamed_wherever_it_is_named() {
 #[test]
 fn settings_of_states_are_added_changed_and_removed() {
     let set = |text: &str, key: &str, value: Option<&str>| {
-        let edit = ModelEdit::SetState { state: state(text, "b"), key: key.into(), value: value.map(String::from) };
+        let edit =
+            ModelEdit::SetState { state: state(text, "b"), key: key.into(), value: value.map(String::from) };
         edited(text, &edit)
     };
     let text = "Liveness:\na = b . c\n# the end\n";
@@ -172,17 +195,38 @@ fn settings_of_states_are_added_changed_and_removed() {
 #[test]
 fn nodes_of_all_kinds_are_added_to_a_chart_and_removed() {
     let parent = state(CHART, "kickBall");
-    for kind in ["BASIC", "OR", "AND", "END", "CONDITION", "JUNCTION", "CHOICE", "FORK", "JOIN", "SHALLOW_HISTORY",
-        "HISTORY", "TERMINATE", "ENTRY", "EXIT"] {
+    for kind in [
+        "BASIC",
+        "OR",
+        "AND",
+        "END",
+        "CONDITION",
+        "JUNCTION",
+        "CHOICE",
+        "FORK",
+        "JOIN",
+        "SHALLOW_HISTORY",
+        "HISTORY",
+        "TERMINATE",
+        "ENTRY",
+        "EXIT",
+    ] {
         let edit = ModelEdit::AddState { parent, kind: kind.into(), name: "extra".into() };
         let after = edited(CHART, &edit);
         assert_eq!(difference(CHART, &after).0, [""; 0], "{kind}");
         assert_eq!(difference(CHART, &after).1.len(), 1, "{kind}");
         let ModelOutline::Chart { states, .. } = outline(&after) else { panic!("a chart") };
-        let number = states.iter().position(|it| after[it.span.start..it.span.end] == format!("extra {kind}"));
+        let number =
+            states.iter().position(|it| after[it.span.start..it.span.end] == format!("extra {kind}"));
         let number = number.unwrap_or_else(|| panic!("{kind} is there"));
-        let connected = edited(&after, &ModelEdit::AddTransition {
-            source: number as u32, target: number as u32, expression: "[x # y]".into() });
+        let connected = edited(
+            &after,
+            &ModelEdit::AddTransition {
+                source: number as u32,
+                target: number as u32,
+                expression: "[x # y]".into(),
+            },
+        );
         assert_eq!(difference(&after, &connected).1, ["  extra -> extra : \"[x # y]\""]);
         let removed = edited(&connected, &ModelEdit::RemoveState { state: number as u32 });
         assert_eq!(removed, CHART, "{kind}");
@@ -194,15 +238,23 @@ fn nodes_of_all_kinds_are_added_to_a_chart_and_removed() {
 #[test]
 fn paths_of_transitions_follow_a_renamed_state() {
     let before = chart(CHART);
-    let after = edited(CHART, &ModelEdit::RenameState { state: state(CHART, "kickBall"), name: "shoot".into() });
+    let after =
+        edited(CHART, &ModelEdit::RenameState { state: state(CHART, "kickBall"), name: "shoot".into() });
     let after_chart = chart(&after);
     assert_eq!(before.transitions().count(), after_chart.transitions().count());
     for ((_, old), (_, new)) in before.transitions().zip(after_chart.transitions()) {
-        assert_eq!((old.source, old.target, &old.expression.to_string()), (new.source, new.target, &new.expression.to_string()));
+        assert_eq!(
+            (old.source, old.target, &old.expression.to_string()),
+            (new.source, new.target, &new.expression.to_string())
+        );
     }
     assert!(first(&after_chart, "shoot").is_some());
     // a second state of a name makes the paths of the first ambiguous
-    let twin = ModelEdit::AddState { parent: state(CHART, "initialize"), kind: "BASIC".into(), name: "LeftKick".into() };
+    let twin = ModelEdit::AddState {
+        parent: state(CHART, "initialize"),
+        kind: "BASIC".into(),
+        name: "LeftKick".into(),
+    };
     let twin = chart(&edited(CHART, &twin));
     assert_eq!(before.transitions().count(), twin.transitions().count());
 }
@@ -216,7 +268,10 @@ fn items_of_forms_are_edited() {
         edited(text, &ModelEdit::SetField { item: goal.item, key: key.into(), value })
     };
     let after = set(GOALS, "requirements", "keep \"it\" # simple");
-    assert!(after.contains("requirements = \"keep \\\"it\\\" # simple\"") || after.contains("requirements = keep \"it\""));
+    assert!(
+        after.contains("requirements = \"keep \\\"it\\\" # simple\"")
+            || after.contains("requirements = keep \"it\"")
+    );
     let ModelOutline::Form { items: again, .. } = outline(&after) else { panic!("a form") };
     let field = |items: &[aseme_models::edit::ItemOutline], key: &str| -> Vec<String> {
         let item = items.iter().find(|item| item.item == goal.item).expect("the goal");
@@ -224,7 +279,10 @@ fn items_of_forms_are_edited() {
     };
     assert_eq!(field(&again, "requirements"), ["keep \"it\" # simple"]);
     assert_eq!(field(&again, "depender"), field(&items, "depender"));
-    assert!(refused(GOALS, &ModelEdit::SetField { item: goal.item, key: "colour".into(), value: None }).contains("no `colour`"));
+    assert!(
+        refused(GOALS, &ModelEdit::SetField { item: goal.item, key: "colour".into(), value: None })
+            .contains("no `colour`")
+    );
 
     // a renamed actor is renamed where goals refer to it
     let actor = items.iter().find(|item| item.word == "Actor").expect("an actor");
@@ -246,7 +304,10 @@ fn formulas_of_a_form_change_by_line() {
     let ModelOutline::Form { items, .. } = outline(PROTOCOL) else { panic!("a form") };
     let part = items.iter().find(|item| item.name == "center").expect("the part");
     let set = |value: &str| {
-        edited(PROTOCOL, &ModelEdit::SetField { item: part.item, key: "liveness".into(), value: Some(value.into()) })
+        edited(
+            PROTOCOL,
+            &ModelEdit::SetField { item: part.item, key: "liveness".into(), value: Some(value.into()) },
+        )
     };
     let after = set("WalkTowardsBall . AssessAttack . [passBall]\nx = y");
     assert_eq!(difference(PROTOCOL, &after), (vec![], vec!["    x = y"]));
@@ -258,7 +319,11 @@ fn formulas_of_a_form_change_by_line() {
 fn functionalities_of_activities_are_fields() {
     let ModelOutline::Form { items, .. } = outline(ROLES) else { panic!("a form") };
     let functionality = items.iter().find(|item| item.word == "Functionality").expect("one");
-    let edit = ModelEdit::SetField { item: functionality.item, key: "technology".into(), value: Some("Rust".into()) };
+    let edit = ModelEdit::SetField {
+        item: functionality.item,
+        key: "technology".into(),
+        value: Some("Rust".into()),
+    };
     let after = edited(ROLES, &edit);
     let (aseme_models::convert::Model::Srm(srm), _, _) = crate::kit::read(&after) else { panic!("roles") };
     assert!(srm.functionalities.iter().any(|it| it.technology == "Rust"));
@@ -274,9 +339,39 @@ fn xmi_is_not_edited() {
 
 fn any_edit() -> impl Strategy<Value = ModelEdit> {
     let number = 0_u32..120;
-    let words = prop::sample::select(vec!["", "x", "[Ball.y > 1]", "a, b", "e [g] / f()", "START", "ω", "\"", "#", "a\nb"]);
-    let keys = prop::sample::select(vec!["", "activity", "duration", "liveness", "requirements", "functionality", "kind", "name", "at"]);
-    let kinds = prop::sample::select(vec!["BASIC", "OR", "JUNCTION", "Goal", "Role", "Constants", "States", "Activity"]);
+    let words = prop::sample::select(vec![
+        "",
+        "x",
+        "[Ball.y > 1]",
+        "a, b",
+        "e [g] / f()",
+        "START",
+        "ω",
+        "\"",
+        "#",
+        "a\nb",
+    ]);
+    let keys = prop::sample::select(vec![
+        "",
+        "activity",
+        "duration",
+        "liveness",
+        "requirements",
+        "functionality",
+        "kind",
+        "name",
+        "at",
+    ]);
+    let kinds = prop::sample::select(vec![
+        "BASIC",
+        "OR",
+        "JUNCTION",
+        "Goal",
+        "Role",
+        "Constants",
+        "States",
+        "Activity",
+    ]);
     (0_usize..12, number.clone(), number, words, keys, kinds).prop_map(|(which, a, b, word, key, kind)| {
         let (text, index) = (word.to_owned(), a as usize % 30);
         match which {

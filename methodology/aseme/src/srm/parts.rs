@@ -34,7 +34,8 @@ impl SrmFile {
         let modifiers = target + modifiers_start(&blanked[target..head_end]);
         let ends = text::trimmed(&blanked, Span::new(start, modifiers));
         let modifiers = text::trimmed(&blanked, Span::new(modifiers, head_end));
-        let modifiers = if modifiers.start < modifiers.end { modifiers } else { Span::new(ends.end, ends.end) };
+        let modifiers =
+            if modifiers.start < modifiers.end { modifiers } else { Span::new(ends.end, ends.end) };
         let expression = text::trimmed(&blanked, Span::new(colon.map_or(end, |colon| colon + 1), end));
         TransitionParts { ends, modifiers, colon, expression }
     }
@@ -54,7 +55,8 @@ mod tests {
 
     #[test]
     fn the_parts_of_an_entry_are_where_they_stand() {
-        let text = "Liveness:\na = b ω . c\nTransitions:\n# ω\na: b -> c also !2 : [x\n  # why\n  && y]\nb -> b\n";
+        let text =
+            "Liveness:\na = b ω . c\nTransitions:\n# ω\na: b -> c also !2 : [x\n  # why\n  && y]\nb -> b\n";
         let (file, _) = SrmFile::parse(text);
         let of = |index: usize| {
             let TransitionParts { ends, modifiers, colon, expression } =

@@ -47,7 +47,8 @@ impl ChartRunner {
             let report = self.machine.judge_swap(&plan).map_err(reasons)?;
             let is_changed = |disposition: &Disposition| !matches!(disposition, Disposition::Kept);
             let is_reported = |path: &str| report.findings.iter().any(|finding| finding.name == path);
-            let others = plan.nodes().filter(|(path, disposition)| is_changed(disposition) && !is_reported(path));
+            let others =
+                plan.nodes().filter(|(path, disposition)| is_changed(disposition) && !is_reported(path));
             let others = others.map(|(path, disposition)| match disposition {
                 Disposition::Lost(why) => format!("state `{path}`, not active: lost, {why}"),
                 other => format!("state `{path}`, not active: {other}"),

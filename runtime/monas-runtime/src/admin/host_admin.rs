@@ -192,7 +192,9 @@ impl HostAdmin {
         };
         let (host, agent) = (self.context.hub.host(), &change.agent);
         match done {
-            _ if change.dry_run => tracing::info!(%host, %agent, action = ?change.action(), done, "a dry run"),
+            _ if change.dry_run => {
+                tracing::info!(%host, %agent, action = ?change.action(), done, "a dry run")
+            }
             true => tracing::info!(%host, %agent, action = ?change.action(), "changed"),
             false => tracing::warn!(%host, %agent, action = ?change.action(), "a change was refused"),
         }

@@ -96,10 +96,14 @@ fn a_file_is_read_understood_and_saved() {
     assert_eq!(edit["edits"][0]["insert"], "zero ");
     let wrong = ask(&mut viewer, json!({"type": "model edit", "text": "", "edit": {}}));
     assert_eq!((&wrong["done"], &wrong["reason"]), (&json!(false), &json!("only words can be added")));
-    let save = json!({"type": "model save", "file": 0, "text": "zero one two\n", "revision": opened["revision"]});
+    let save =
+        json!({"type": "model save", "file": 0, "text": "zero one two\n", "revision": opened["revision"]});
     let saved = ask(&mut viewer, save.clone());
     assert_eq!(saved["done"], true, "{saved}");
-    assert_eq!((models.text("a.srm").as_str(), models.text("b.srm").as_str()), ("zero one two\n", "one two\n"));
+    assert_eq!(
+        (models.text("a.srm").as_str(), models.text("b.srm").as_str()),
+        ("zero one two\n", "one two\n")
+    );
     // the revision is no longer the one of the file
     assert_eq!(ask(&mut viewer, save)["done"], false);
 }
@@ -110,7 +114,8 @@ fn a_file_that_another_has_changed_is_not_overwritten() {
     let mut viewer = Viewer::open(&models.studio).unwrap();
     let opened = ask(&mut viewer, json!({"type": "model open", "file": 1}));
     fs::write(models.path("b.srm"), "theirs\n").unwrap();
-    let save = |revision: &Value| json!({"type": "model save", "file": 1, "text": "mine\n", "revision": revision});
+    let save =
+        |revision: &Value| json!({"type": "model save", "file": 1, "text": "mine\n", "revision": revision});
     let refused = ask(&mut viewer, save(&opened["revision"]));
     assert_eq!((&refused["done"], &refused["text"]), (&json!(false), &json!("theirs\n")));
     assert_eq!(models.text("b.srm"), "theirs\n");
@@ -155,7 +160,11 @@ fn a_link_is_followed_when_it_is_given_and_not_later() {
     std::os::unix::fs::symlink(&outside, models.path("a.srm")).unwrap();
     let save = json!({"type": "model save", "file": 0, "text": "x\n", "revision": opened["revision"]});
     assert_eq!(ask(&mut viewer, save)["done"], true);
-    assert_eq!(fs::read_to_string(&outside).unwrap(), "one two\n", "the link was replaced, not what it leads to");
+    assert_eq!(
+        fs::read_to_string(&outside).unwrap(),
+        "one two\n",
+        "the link was replaced, not what it leads to"
+    );
     assert_eq!(models.text("a.srm"), "x\n");
 }
 

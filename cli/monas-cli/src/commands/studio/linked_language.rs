@@ -11,7 +11,7 @@ use aseme_models::edit::{
     self, Completions, FieldKind, ModelEdit, ModelOutline, ProgramNames, StateOutline, TransitionOutline,
 };
 use aseme_models::{convert, statechart_of};
-use aseme_verify::{CheckSettings, ProgressObserver, ProgramSymbols};
+use aseme_verify::{CheckSettings, ProgramSymbols, ProgressObserver};
 use monas::Registry;
 use monas_studio::{ModelLanguage, ModelWorkspace};
 use serde_json::{Value, json};
@@ -32,7 +32,10 @@ const CHECK_STATES: usize = 20_000;
 const ENTRIES: usize = 1000;
 
 /// The workspace of models at paths; of a folder all models in it.
-pub(super) fn workspace(paths: &[PathBuf], format: Format) -> Result<Option<Arc<ModelWorkspace>>, CommandFailure> {
+pub(super) fn workspace(
+    paths: &[PathBuf],
+    format: Format,
+) -> Result<Option<Arc<ModelWorkspace>>, CommandFailure> {
     if paths.is_empty() {
         return Ok(None);
     }
@@ -40,7 +43,9 @@ pub(super) fn workspace(paths: &[PathBuf], format: Format) -> Result<Option<Arc<
     let mut files = Vec::new();
     for path in paths {
         match path.is_dir() {
-            true => files.extend(models_in(path).map_err(|error| failed(format!("{}: {error}", path.display())))?),
+            true => {
+                files.extend(models_in(path).map_err(|error| failed(format!("{}: {error}", path.display())))?)
+            }
             false => files.push(path.clone()),
         }
     }
@@ -48,7 +53,8 @@ pub(super) fn workspace(paths: &[PathBuf], format: Format) -> Result<Option<Arc<
         return Err(failed(format!("there is no model to edit; models end in .{}", ENDINGS.join(", ."))));
     }
     let language = LinkedLanguage { symbols: program::linked()?, activities: activities() };
-    let workspace = ModelWorkspace::new(files, Arc::new(language)).map_err(|error| failed(error.to_string()))?;
+    let workspace =
+        ModelWorkspace::new(files, Arc::new(language)).map_err(|error| failed(error.to_string()))?;
     Ok(Some(Arc::new(workspace)))
 }
 
@@ -112,7 +118,8 @@ impl ModelLanguage for LinkedLanguage {
         });
         let report = aseme_verify::check::check(&Source::new(name, text), &settings);
         let positions = TextPositions::of(text);
-        let findings = report.findings.iter().filter(|it| it.diagnostic.severity > yase::Severity::Information);
+        let findings =
+            report.findings.iter().filter(|it| it.diagnostic.severity > yase::Severity::Information);
         let findings = findings.map(|it| finding(&it.diagnostic, it.trace.as_deref(), &positions));
         json!({"done": true, "what": report.what, "stopped": report.is_stopped,
             "findings": findings.collect::<Vec<_>>()})
@@ -133,7 +140,8 @@ impl ModelLanguage for LinkedLanguage {
     }
 
     fn edit(&self, text: &str, edit: Value) -> Result<Value, String> {
-        let edit: ModelEdit = serde_json::from_value(edit).map_err(|error| format!("not an edit: {error}"))?;
+        let edit: ModelEdit =
+            serde_json::from_value(edit).map_err(|error| format!("not an edit: {error}"))?;
         let edits = edit::edits(text, &edit).map_err(|refused| match refused.hint {
             Some(hint) => format!("{}: {hint}", refused.message),
             None => refused.message,
