@@ -99,6 +99,10 @@ pub(crate) fn execute(
                 "--allow-control is for a run; a tape cannot be changed".into(),
             ));
         }
+        Some(model) if linked_language::is_model(model) => {
+            let message = format!("{0} is a model, not a tape: monas studio --edit {0}", model.display());
+            return Err(CommandFailure::Usage(message));
+        }
         Some(tape) => serve_tape(tape, arguments.beside.as_deref(), &arguments.listen, format, console)?,
         None if arguments.is_without_run() => serve_models(&arguments.listen, format, console)?,
         None => {

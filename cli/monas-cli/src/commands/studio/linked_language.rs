@@ -58,12 +58,16 @@ pub(super) fn workspace(
     Ok(Some(Arc::new(workspace)))
 }
 
+/// Whether a file is named like a model.
+pub(super) fn is_model(path: &Path) -> bool {
+    path.extension().and_then(|ending| ending.to_str()).is_some_and(|ending| ENDINGS.contains(&ending))
+}
+
 fn models_in(folder: &Path) -> std::io::Result<Vec<PathBuf>> {
     let mut found: Vec<PathBuf> = Vec::new();
     for entry in std::fs::read_dir(folder)? {
         let path = entry?.path();
-        let ending = path.extension().and_then(|ending| ending.to_str());
-        if path.is_file() && ending.is_some_and(|ending| ENDINGS.contains(&ending)) {
+        if path.is_file() && is_model(&path) {
             found.push(path);
         }
     }

@@ -18,6 +18,23 @@ export interface Outline {
   findings: ModelFinding[];
 }
 
+/** How much there is of what an edit names by number: numbers hold while that is the same. */
+function shapeOf(outline: Outline | null, edit: ModelEdit): string {
+  const parts = outline?.parts;
+  switch (edit.edit) {
+    case 'add_item':
+    case 'add_entry':
+      return '';
+    case 'set_field':
+    case 'remove_item':
+      return String(parts?.form === 'items' ? parts.items.length : 0);
+    case 'set_entry':
+      return String(parts?.form === 'role' ? parts.entries.length : 0);
+    default:
+      return `${outline?.picture?.nodes.length} ${outline?.picture?.transitions.length}`;
+  }
+}
+
 /** A file that was opened. */
 interface OpenFile {
   state: EditorState;
@@ -48,6 +65,7 @@ export class ModelEditor {
   #client: StudioClient;
   #files = new Map<number, OpenFile>();
   #view: EditorView | null = null;
+  #edits: Promise<boolean> = Promise.resolve(true);
   #outlineTimer = 0;
   #checkTimer = 0;
 
@@ -169,12 +187,26 @@ export class ModelEditor {
     }
   }
 
-  /** Makes an edit: replacements in the text, which undo takes back together. */
-  async edit(edit: ModelEdit): Promise<boolean> {
+  /**
+   * Makes an edit, after those before: replacements in the text, which undo takes back together.
+   * States and transitions are given by their numbers in the present outline.
+   */
+  edit(edit: ModelEdit): Promise<boolean> {
+    const known = this.outline;
+    const made = this.#edits.then(() => this.#make(edit, known));
+    this.#edits = made;
+    return made;
+  }
+
+  async #make(edit: ModelEdit, known: Outline | null): Promise<boolean> {
     const view = this.#view;
-    const text = this.text;
-    if (!view || this.outline?.text !== text) {
+    if (this.outline?.text !== this.text) {
       await this.#understand();
+    }
+    const text = this.text;
+    if (!this.outline || this.outline.text !== text || shapeOf(this.outline, edit) !== shapeOf(known, edit)) {
+      this.outcome = { done: false, lines: ['the text has changed meanwhile: once more, please'] };
+      return false;
     }
     const given = Object.fromEntries(Object.entries(edit).filter(([, value]) => value !== null));
     const reply = await this.#client.model('edit', { text, edit: given });
