@@ -240,3 +240,38 @@ fn table(text: &str) -> Value {
     };
     names.into_iter().map(row).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn language() -> LinkedLanguage {
+        LinkedLanguage { symbols: ProgramSymbols::default(), activities: vec!["Wait".to_owned()] }
+    }
+
+    #[test]
+    fn positions_are_those_of_a_page() {
+        let text = "Liveness:\nr = Waitω . Wait\nTransitions:\nWait -> nowhere : [x]\n";
+        let outline = language().outline("r.srm", text);
+        let units: Vec<u16> = text.encode_utf16().collect();
+        let finding = &outline["findings"][0];
+        let range = |key: &str| finding[key].as_u64().unwrap_or_default() as usize;
+        let marked = String::from_utf16(&units[range("from")..range("to")]).expect("whole characters");
+        assert_eq!((marked.as_str(), &finding["line"]), ("Wait -> nowhere : [x]", &json!(4)));
+        assert_eq!(outline["parts"]["form"], "role");
+        assert!(outline["picture"]["nodes"].as_array().is_some_and(|nodes| nodes.len() > 3));
+    }
+
+    #[test]
+    fn edits_are_read_strictly_and_refused_with_a_reason() {
+        let text = "SAG:\n\nGoal: ω\n\nActor: Team\n";
+        let edit = |edit: Value| language().edit(text, edit);
+        let added = edit(json!({"edit": "set_field", "item": 1, "key": "depender", "value": "Team"}));
+        let added = added.expect("it is possible");
+        assert_eq!(added["edits"], json!([{"from": 13, "to": 13, "insert": "\n  depender = Team"}]));
+        let unknown = edit(json!({"edit": "set_field", "item": 1, "key": "x", "colour": 1})).unwrap_err();
+        assert!(unknown.contains("colour"), "{unknown}");
+        let refused = edit(json!({"edit": "remove_item", "item": 9})).unwrap_err();
+        assert!(refused.contains("no item 9"), "{refused}");
+    }
+}
