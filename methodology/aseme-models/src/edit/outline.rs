@@ -10,7 +10,7 @@ use super::chart_edit::ChartText;
 use super::item_edit::{FormText, plain};
 use super::role_edit::RoleText;
 use super::{TextForm, form};
-use crate::document::{list, reference, settings};
+use crate::document::{Reference, list, reference, settings};
 use crate::meta::{Class, Feature, FeatureKind, MANY, Metamodel};
 
 /// What of a model's text can be edited.
@@ -200,7 +200,7 @@ fn items(form: &FormText<'_>) -> ModelOutline {
             let setting = settings.iter().flatten().find(|setting| setting.key.text == feature.word);
             let values = setting.map(|setting| match (feature.kind, setting.block) {
                 (FeatureKind::Links { .. }, _) => {
-                    list(&setting.value).into_iter().map(|word| word.text).collect()
+                    list(&setting.value).into_iter().map(|word| written(word.text)).collect()
                 }
                 (_, Some(lines)) => lines.iter().map(|line| line.content.text.clone()).collect(),
                 _ => vec![plain(&setting.value.text)],
@@ -217,6 +217,11 @@ fn items(form: &FormText<'_>) -> ModelOutline {
         })
     });
     ModelOutline::Form { classes: classes.collect(), items: items.collect() }
+}
+
+/// A reference as [`ItemOutline::reference`] has it, whether it is quoted or not.
+fn written(word: String) -> String {
+    Reference::parse(&word).map_or(word, |one| reference(&one.name, one.number))
 }
 
 /// The features of a class that are lines below its header.

@@ -319,6 +319,12 @@ fn formulas_of_a_form_change_by_line() {
 fn functionalities_of_activities_are_fields() {
     let ModelOutline::Form { items, .. } = outline(ROLES) else { panic!("a form") };
     let functionality = items.iter().find(|item| item.word == "Functionality").expect("one");
+    // quoted or not, a reference is written as its item has it
+    let activities = items.iter().filter(|item| item.word == "Activity");
+    let linked = activities.flat_map(|item| item.fields.iter().flat_map(|(_, links)| links));
+    for link in linked {
+        assert!(items.iter().any(|item| item.word == "Functionality" && item.reference == *link), "{link}");
+    }
     let edit = ModelEdit::SetField {
         item: functionality.item,
         key: "technology".into(),
