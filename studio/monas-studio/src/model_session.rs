@@ -26,7 +26,7 @@ impl ModelSession {
         ModelSession { workspace, may_write, stop: Arc::default(), checked, sender }
     }
 
-    /// What a page is told first.
+    /// The first message to a page.
     pub(crate) fn greeting(&self) -> Value {
         json!({"type": "models", "files": self.workspace.names(), "writable": self.may_write})
     }

@@ -11,7 +11,7 @@ use serde_json::{Value, json};
 /// The longest model, in bytes.
 pub(crate) const TEXT_LIMIT: u64 = 1 << 20;
 
-/// What a program knows of models. Its replies are read by the page: positions are counted in
+/// What models mean. Its replies are read by the page: positions are counted in
 /// UTF-16 code units, as a page counts them.
 pub trait ModelLanguage: Send + Sync {
     /// What is understood of a text, however wrong it is: `picture`, `findings`, and `parts`, which
