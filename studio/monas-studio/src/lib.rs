@@ -21,7 +21,8 @@
 //!   strictly, and refused in one place.
 //! - **Edits are edits of text.** Models can be edited that the program lists in a
 //!   [`ModelWorkspace`]; what a page does in a drawing becomes replacements in the text of the
-//!   file. What models mean is a [`ModelLanguage`], which the program gives.
+//!   file. What models mean is a [`ModelLanguage`]; that of the method is
+//!   [`AsemeLanguage`], to which the program gives its names.
 //! - **The drawing comes from the run.** Shapes are those of [`yase_export::to_picture`], the same
 //!   layout as in drawings of models. The page only draws them.
 //!
@@ -39,6 +40,7 @@
 //! ```
 
 mod access;
+mod aseme_language;
 mod asset;
 mod chart_history;
 #[cfg_attr(not(unix), allow(dead_code, reason = "only runs of Unix are followed"))]
@@ -86,12 +88,14 @@ mod tape_moment;
 mod tape_pair;
 mod tape_run;
 mod tape_session;
+mod text_positions;
 mod time;
 mod transition_explanation;
 mod viewer;
 mod viewer_request;
 mod why;
 
+pub use aseme_language::AsemeLanguage;
 pub use error::{Error, ErrorKind};
 pub use guard_atom::GuardAtom;
 pub use message_chain::{ChainLink, MessageChain};

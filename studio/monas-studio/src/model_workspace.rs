@@ -8,6 +8,9 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use serde_json::{Value, json};
 
+/// The names of files that a folder is searched for.
+const ENDINGS: [&str; 8] = ["srm", "sag", "suc", "aip", "ft", "eac", "iac", "stct"];
+
 /// The longest model, in bytes.
 pub(crate) const TEXT_LIMIT: u64 = 1 << 20;
 
@@ -51,11 +54,11 @@ struct ModelFile {
 }
 
 impl ModelWorkspace {
-    /// The files at these paths, each once.
+    /// The files at these paths, each once; of a folder all that are named like a model.
     ///
     /// # Errors
-    /// A path is no file.
-    pub fn new(paths: Vec<PathBuf>, language: Arc<dyn ModelLanguage>) -> io::Result<ModelWorkspace> {
+    /// There is no file, or a path is none.
+    pub fn new(paths: &[PathBuf], language: Arc<dyn ModelLanguage>) -> io::Result<ModelWorkspace> {
         let file = |path: PathBuf| {
             let name = path.display().to_string();
             let found = fs::canonicalize(&path).and_then(|path| match path.is_file() {
@@ -67,11 +70,15 @@ impl ModelWorkspace {
                 .map_err(|error| io::Error::new(error.kind(), format!("{name}: {error}")))
         };
         let mut files: Vec<ModelFile> = Vec::new();
-        for path in paths {
+        for path in given(paths)? {
             let found = file(path)?;
             if !files.iter().any(|known| known.path == found.path) {
                 files.push(found);
             }
+        }
+        if files.is_empty() {
+            let message = format!("there is no model to edit; models end in .{}", ENDINGS.join(", ."));
+            return Err(io::Error::other(message));
         }
         Ok(ModelWorkspace { files, language, saving: Mutex::default() })
     }
@@ -118,6 +125,28 @@ impl ModelFile {
     fn read(&self) -> Result<String, String> {
         read_text(&self.path).map_err(|error| format!("{}: {error}", self.name))
     }
+}
+
+/// The paths of files: those given, and the models in folders in order.
+fn given(paths: &[PathBuf]) -> io::Result<Vec<PathBuf>> {
+    let mut files = Vec::new();
+    for path in paths {
+        if !path.is_dir() {
+            files.push(path.clone());
+            continue;
+        }
+        let inside =
+            fs::read_dir(path)?.map(|entry| Ok(entry?.path())).collect::<io::Result<Vec<PathBuf>>>()?;
+        let mut models: Vec<PathBuf> = inside.into_iter().filter(|path| is_model(path)).collect();
+        models.sort();
+        files.extend(models);
+    }
+    Ok(files)
+}
+
+fn is_model(path: &Path) -> bool {
+    let ending = path.extension().and_then(|ending| ending.to_str());
+    path.is_file() && ending.is_some_and(|ending| ENDINGS.contains(&ending))
 }
 
 fn read_text(path: &Path) -> io::Result<String> {

@@ -1,9 +1,7 @@
 //! `monas studio`: a view of a run or of a tape in the browser.
 
-mod linked_language;
 #[cfg(feature = "soccer")]
 mod soccer_field;
-mod text_positions;
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -11,9 +9,13 @@ use std::time::Duration;
 
 use clap::{Args, ValueHint};
 use clap_complete::engine::ArgValueCandidates;
-use monas_studio::{ListenAddress, Pace, Scene, Studio, StudioSettings, TapeRun};
+use monas::Registry;
+use monas_studio::{
+    AsemeLanguage, ListenAddress, ModelWorkspace, Pace, Scene, Studio, StudioSettings, TapeRun,
+};
 use monas_tape::Recording;
 
+use super::model::program;
 use crate::input::recorded_charts;
 use crate::remote::{RunSelector, connection, runs};
 use crate::terminal::{
@@ -64,7 +66,7 @@ pub(crate) struct ListenArgument {
 impl ListenArgument {
     fn settings(&self, format: Format) -> Result<StudioSettings, CommandFailure> {
         let ListenArgument { listen, origins, allow_control, models } = self.clone();
-        let models = linked_language::workspace(&models, format)?;
+        let models = (!models.is_empty()).then(|| workspace(&models, format)).transpose()?;
         Ok(StudioSettings {
             listen,
             origins,
@@ -99,10 +101,6 @@ pub(crate) fn execute(
                 "--allow-control is for a run; a tape cannot be changed".into(),
             ));
         }
-        Some(model) if linked_language::is_model(model) => {
-            let message = format!("{0} is a model, not a tape: monas studio --edit {0}", model.display());
-            return Err(CommandFailure::Usage(message));
-        }
         Some(tape) => serve_tape(tape, arguments.beside.as_deref(), &arguments.listen, format, console)?,
         None if arguments.is_without_run() => serve_models(&arguments.listen, format, console)?,
         None => {
@@ -126,6 +124,13 @@ pub(crate) fn serve(
     let settings = StudioSettings { scene: scene(), pace, ..listen.settings(format)? };
     let studio = Studio::of_run(socket, settings).map_err(|error| CommandFailure::failed(format, error))?;
     announce(studio, console)
+}
+
+/// The models at paths, with the names of this program.
+fn workspace(paths: &[PathBuf], format: Format) -> Result<Arc<ModelWorkspace>, CommandFailure> {
+    let functionality = |name: &str| program::functionality(&Registry::linked(), name);
+    let language = AsemeLanguage::new(program::linked()?, functionality);
+    ModelWorkspace::new(paths, Arc::new(language)).map(Arc::new).map_err(failed(format))
 }
 
 /// Serves models without a run.

@@ -50,7 +50,7 @@ impl Models {
             fs::write(folder.path().join(name), "one two\n").unwrap();
         }
         let paths = ["a.srm", "b.srm"].map(|name| folder.path().join(name));
-        let models = Some(Arc::new(ModelWorkspace::new(paths.into(), Arc::new(Words)).unwrap()));
+        let models = Some(Arc::new(ModelWorkspace::new(&paths, Arc::new(Words)).unwrap()));
         let listen = Some(listen.parse().unwrap());
         let settings = StudioSettings { listen, allows_control, models, ..StudioSettings::default() };
         Models { studio: Studio::of_models(settings).unwrap(), folder }
@@ -143,9 +143,10 @@ fn no_other_file_is_read_or_written() {
         assert!(reply.get("text").is_none());
     }
     assert_eq!(models.text("secret.srm"), "one two\n");
-    let missing = ModelWorkspace::new(vec![models.path("none.srm")], Arc::new(Words)).unwrap_err();
+    let missing = ModelWorkspace::new(&[models.path("none.srm")], Arc::new(Words)).unwrap_err();
     assert!(missing.to_string().contains("none.srm"), "{missing}");
-    assert!(ModelWorkspace::new(vec![models.folder.path().to_owned()], Arc::new(Words)).is_err());
+    let empty = tempfile::tempdir().unwrap();
+    assert!(ModelWorkspace::new(&[empty.path().to_owned()], Arc::new(Words)).is_err());
 }
 
 #[cfg(unix)]

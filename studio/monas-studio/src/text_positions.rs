@@ -3,14 +3,14 @@
 use yase::Span;
 
 /// The characters of a text that are not one byte and one code unit.
-pub(super) struct TextPositions {
+pub(crate) struct TextPositions {
     /// The bytes and the code units after each of them.
     ends: Vec<(usize, usize)>,
     bytes: usize,
 }
 
 impl TextPositions {
-    pub(super) fn of(text: &str) -> TextPositions {
+    pub(crate) fn of(text: &str) -> TextPositions {
         let (mut ends, mut units) = (Vec::new(), 0);
         for (at, letter) in text.char_indices() {
             units += letter.len_utf16();
@@ -22,7 +22,7 @@ impl TextPositions {
     }
 
     /// The code units before a byte.
-    pub(super) fn units(&self, byte: usize) -> usize {
+    pub(crate) fn units(&self, byte: usize) -> usize {
         let byte = byte.min(self.bytes);
         let known = self.ends.partition_point(|(end, _)| *end <= byte);
         let (end, units) = known.checked_sub(1).map_or((0, 0), |index| self.ends[index]);
@@ -30,14 +30,14 @@ impl TextPositions {
     }
 
     /// The bytes before a code unit.
-    pub(super) fn byte(&self, unit: usize) -> usize {
+    pub(crate) fn byte(&self, unit: usize) -> usize {
         let known = self.ends.partition_point(|(_, units)| *units <= unit);
         let (end, units) = known.checked_sub(1).map_or((0, 0), |index| self.ends[index]);
         (end + (unit - units)).min(self.bytes)
     }
 
     /// Start and end of a span.
-    pub(super) fn range(&self, span: Span) -> (usize, usize) {
+    pub(crate) fn range(&self, span: Span) -> (usize, usize) {
         (self.units(span.start), self.units(span.end))
     }
 }

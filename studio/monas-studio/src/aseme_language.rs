@@ -1,7 +1,6 @@
-//! Models for the studio's editor, with the names of this program.
+//! The models of the method, with the names of the program that runs them.
 
 use std::ops::ControlFlow;
-use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
@@ -12,17 +11,15 @@ use aseme_models::edit::{
 };
 use aseme_models::{convert, statechart_of};
 use aseme_verify::{CheckSettings, ProgramSymbols, ProgressObserver};
-use monas::Registry;
-use monas_studio::{ModelLanguage, ModelWorkspace};
 use serde_json::{Value, json};
 use yase::{Diagnostic, Source};
 
-use super::text_positions::TextPositions;
-use crate::commands::model::program;
-use crate::terminal::{CommandFailure, Format, WallClock};
+use crate::model_workspace::ModelLanguage;
+use crate::text_positions::TextPositions;
+use crate::time::now;
 
-/// The names of files that a folder is searched for.
-const ENDINGS: [&str; 8] = ["srm", "sag", "suc", "aip", "ft", "eac", "iac", "stct"];
+/// The functionality and the technology of an activity, if the program has it.
+type Functionality = dyn Fn(&str) -> Option<(String, String)> + Send + Sync;
 
 /// The longest check, and its most states: a page waits for it.
 const CHECK_LIMIT: Duration = Duration::from_secs(20);
@@ -31,67 +28,91 @@ const CHECK_STATES: usize = 20_000;
 /// The most entries of a completion.
 const ENTRIES: usize = 1000;
 
-/// The workspace of models at paths; of a folder all models in it.
-pub(super) fn workspace(
-    paths: &[PathBuf],
-    format: Format,
-) -> Result<Option<Arc<ModelWorkspace>>, CommandFailure> {
-    if paths.is_empty() {
-        return Ok(None);
-    }
-    let failed = |error: String| CommandFailure::failed(format, error);
-    let mut files = Vec::new();
-    for path in paths {
-        match path.is_dir() {
-            true => {
-                files.extend(models_in(path).map_err(|error| failed(format!("{}: {error}", path.display())))?)
-            }
-            false => files.push(path.clone()),
-        }
-    }
-    if files.is_empty() {
-        return Err(failed(format!("there is no model to edit; models end in .{}", ENDINGS.join(", ."))));
-    }
-    let language = LinkedLanguage { symbols: program::linked()?, activities: activities() };
-    let workspace =
-        ModelWorkspace::new(files, Arc::new(language)).map_err(|error| failed(error.to_string()))?;
-    Ok(Some(Arc::new(workspace)))
-}
-
-/// Whether a file is named like a model.
-pub(super) fn is_model(path: &Path) -> bool {
-    path.extension().and_then(|ending| ending.to_str()).is_some_and(|ending| ENDINGS.contains(&ending))
-}
-
-fn models_in(folder: &Path) -> std::io::Result<Vec<PathBuf>> {
-    let mut found: Vec<PathBuf> = Vec::new();
-    for entry in std::fs::read_dir(folder)? {
-        let path = entry?.path();
-        if path.is_file() && is_model(&path) {
-            found.push(path);
-        }
-    }
-    found.sort();
-    Ok(found)
-}
-
-fn activities() -> Vec<String> {
-    Registry::linked().activity_names().map(String::from).collect()
-}
-
-/// The language of models with the messages, functions and activities of this program.
-struct LinkedLanguage {
+/// The language of models with the messages, functions and activities of a program.
+pub struct AsemeLanguage {
     symbols: ProgramSymbols,
     activities: Vec<String>,
+    functionality: Box<Functionality>,
 }
 
-impl LinkedLanguage {
+impl AsemeLanguage {
+    /// The language with these symbols; `functionality` gives that of an activity, and its
+    /// technology.
+    pub fn new(
+        symbols: ProgramSymbols,
+        functionality: impl Fn(&str) -> Option<(String, String)> + Send + Sync + 'static,
+    ) -> AsemeLanguage {
+        let activities = symbols.activities.keys().cloned().collect();
+        AsemeLanguage { symbols, activities, functionality: Box::new(functionality) }
+    }
+
     fn names(&self) -> ProgramNames<'_> {
         ProgramNames { environment: &self.symbols.vocabulary, activities: &self.activities }
     }
+
+    fn parts_object(&self, parts: &ModelOutline, text: &str, positions: &TextPositions) -> Value {
+        let states = |states: &[StateOutline]| -> Value {
+            let state = |state: &StateOutline| {
+                let (from, to) = positions.range(state.span);
+                let settings: serde_json::Map<String, Value> =
+                    state.settings.iter().map(|(key, value)| (key.clone(), json!(value))).collect();
+                json!({"from": from, "to": to, "settings": settings})
+            };
+            states.iter().map(state).collect()
+        };
+        let transitions = |transitions: &[TransitionOutline]| -> Value {
+            let transition = |it: &TransitionOutline| {
+                let place = it.span.map(|span| positions.range(span));
+                json!({"from": place.map(|place| place.0), "to": place.map(|place| place.1),
+                    "expression": it.expression, "modifiers": it.modifiers, "shared": it.is_shared})
+            };
+            transitions.iter().map(transition).collect()
+        };
+        match parts {
+            ModelOutline::Role { states: nodes, transitions: arrows, entries } => {
+                let entry = |entry: &edit::EntryOutline| {
+                    let (from, to) = positions.range(entry.span);
+                    json!({"section": entry.section, "from": from, "to": to,
+                        "text": text[entry.span.start..entry.span.end]})
+                };
+                json!({"form": "role", "states": states(nodes), "transitions": transitions(arrows),
+                    "entries": entries.iter().map(entry).collect::<Vec<_>>(), "table": self.table(text)})
+            }
+            ModelOutline::Chart { states: nodes, transitions: arrows } => {
+                json!({"form": "chart", "states": states(nodes), "transitions": transitions(arrows)})
+            }
+            ModelOutline::Form { classes, items } => {
+                let item = |item: &edit::ItemOutline| {
+                    let (from, to) = positions.range(item.span);
+                    let fields: serde_json::Map<String, Value> =
+                        item.fields.iter().map(|(key, values)| ((*key).to_owned(), json!(values))).collect();
+                    json!({"item": item.item, "word": item.word, "name": item.name, "reference": item.reference,
+                        "from": from, "to": to, "fields": fields})
+                };
+                json!({"form": "items", "classes": classes.iter().map(class_object).collect::<Vec<_>>(),
+                    "items": items.iter().map(item).collect::<Vec<_>>()})
+            }
+            _ => json!({"form": "text"}),
+        }
+    }
+
+    /// The functionality of each activity of a role, as this program implements it.
+    fn table(&self, text: &str) -> Value {
+        let (file, _) = SrmFile::parse(text);
+        let (chart, _) = aseme::role_to_statechart(file.srm());
+        let mut names: Vec<String> = chart.nodes().filter_map(|(_, node)| node.activity.clone()).collect();
+        names.sort();
+        names.dedup();
+        let row = |name: String| {
+            let known = (self.functionality)(&name);
+            let (functionality, technology) = known.unwrap_or_default();
+            json!({"activity": name, "functionality": functionality, "technology": technology})
+        };
+        names.into_iter().map(row).collect()
+    }
 }
 
-impl ModelLanguage for LinkedLanguage {
+impl ModelLanguage for AsemeLanguage {
     fn outline(&self, name: &str, text: &str) -> Value {
         let source = Source::new(name, text);
         let (positions, parts) = (TextPositions::of(text), edit::outline(text));
@@ -105,7 +126,7 @@ impl ModelLanguage for LinkedLanguage {
                 (picture.and_then(|text| serde_json::from_str(&text).ok()).unwrap_or_default(), findings)
             }
         };
-        json!({"done": true, "picture": picture, "parts": parts_object(&parts, text, &positions),
+        json!({"done": true, "picture": picture, "parts": self.parts_object(&parts, text, &positions),
             "findings": findings.iter().map(|it| finding(it, None, &positions)).collect::<Vec<_>>()})
     }
 
@@ -113,9 +134,9 @@ impl ModelLanguage for LinkedLanguage {
         let mut settings = CheckSettings::default();
         settings.world = Some(self.symbols.clone());
         settings.states = CHECK_STATES;
-        let (clock, stop) = (WallClock::start(), stop.clone());
+        let (begin, stop) = (now(), stop.clone());
         settings.observer = ProgressObserver::new(move |_| {
-            match stop.load(Ordering::SeqCst) || clock.elapsed() > CHECK_LIMIT {
+            match stop.load(Ordering::SeqCst) || now().saturating_duration_since(begin) > CHECK_LIMIT {
                 true => ControlFlow::Break(()),
                 false => ControlFlow::Continue(()),
             }
@@ -167,52 +188,6 @@ fn finding(diagnostic: &Diagnostic, trace: Option<&str>, positions: &TextPositio
         "from": from, "to": to, "trace": trace})
 }
 
-fn parts_object(parts: &ModelOutline, text: &str, positions: &TextPositions) -> Value {
-    let states = |states: &[StateOutline]| -> Value {
-        let state = |state: &StateOutline| {
-            let (from, to) = positions.range(state.span);
-            let settings: serde_json::Map<String, Value> =
-                state.settings.iter().map(|(key, value)| (key.clone(), json!(value))).collect();
-            json!({"from": from, "to": to, "settings": settings})
-        };
-        states.iter().map(state).collect()
-    };
-    let transitions = |transitions: &[TransitionOutline]| -> Value {
-        let transition = |it: &TransitionOutline| {
-            let place = it.span.map(|span| positions.range(span));
-            json!({"from": place.map(|place| place.0), "to": place.map(|place| place.1),
-                "expression": it.expression, "modifiers": it.modifiers, "shared": it.is_shared})
-        };
-        transitions.iter().map(transition).collect()
-    };
-    match parts {
-        ModelOutline::Role { states: nodes, transitions: arrows, entries } => {
-            let entry = |entry: &edit::EntryOutline| {
-                let (from, to) = positions.range(entry.span);
-                json!({"section": entry.section, "from": from, "to": to,
-                    "text": text[entry.span.start..entry.span.end]})
-            };
-            json!({"form": "role", "states": states(nodes), "transitions": transitions(arrows),
-                "entries": entries.iter().map(entry).collect::<Vec<_>>(), "table": table(text)})
-        }
-        ModelOutline::Chart { states: nodes, transitions: arrows } => {
-            json!({"form": "chart", "states": states(nodes), "transitions": transitions(arrows)})
-        }
-        ModelOutline::Form { classes, items } => {
-            let item = |item: &edit::ItemOutline| {
-                let (from, to) = positions.range(item.span);
-                let fields: serde_json::Map<String, Value> =
-                    item.fields.iter().map(|(key, values)| ((*key).to_owned(), json!(values))).collect();
-                json!({"item": item.item, "word": item.word, "name": item.name, "reference": item.reference,
-                    "from": from, "to": to, "fields": fields})
-            };
-            json!({"form": "items", "classes": classes.iter().map(class_object).collect::<Vec<_>>(),
-                "items": items.iter().map(item).collect::<Vec<_>>()})
-        }
-        _ => json!({"form": "text"}),
-    }
-}
-
 fn class_object(class: &edit::ClassOutline) -> Value {
     let field = |field: &edit::FieldOutline| match &field.kind {
         FieldKind::Formulas => json!({"key": field.key, "kind": "formulas"}),
@@ -225,28 +200,12 @@ fn class_object(class: &edit::ClassOutline) -> Value {
     json!({"word": class.word, "title": class.title, "fields": class.fields.iter().map(field).collect::<Vec<_>>()})
 }
 
-/// The functionality of each activity of a role, as this program implements it.
-fn table(text: &str) -> Value {
-    let (file, _) = SrmFile::parse(text);
-    let (chart, _) = aseme::role_to_statechart(file.srm());
-    let mut names: Vec<String> = chart.nodes().filter_map(|(_, node)| node.activity.clone()).collect();
-    names.sort();
-    names.dedup();
-    let registry = Registry::linked();
-    let row = |name: String| {
-        let known = program::functionality(&registry, &name);
-        let (functionality, technology) = known.unwrap_or_default();
-        json!({"activity": name, "functionality": functionality, "technology": technology})
-    };
-    names.into_iter().map(row).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn language() -> LinkedLanguage {
-        LinkedLanguage { symbols: ProgramSymbols::default(), activities: vec!["Wait".to_owned()] }
+    fn language() -> AsemeLanguage {
+        AsemeLanguage::new(ProgramSymbols::default(), |_| None)
     }
 
     #[test]
