@@ -9,7 +9,7 @@
 //!
 //! The commands in the plane, which all bodies have, become joint targets here: a [`WalkEngine`]
 //! turns velocities into steps, skills are motions of the joints, and odometry follows from the
-//! foot on the ground by the [`kinematics`] of the legs.
+//! foot on the ground by the [`kinematics`] of the legs. [`mass`] has the centre of mass.
 //!
 //! # Limits
 //!
@@ -34,6 +34,7 @@ mod error;
 pub mod kinematics;
 mod leds;
 pub mod lola;
+pub mod mass;
 mod motions;
 mod nao;
 mod served_nao;
