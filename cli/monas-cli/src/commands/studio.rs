@@ -9,7 +9,8 @@ use std::time::Duration;
 
 use clap::{Args, ValueHint};
 use clap_complete::engine::ArgValueCandidates;
-use monas_studio::{ListenAddress, Pace, Scene, Studio, StudioSettings, TapeRun};
+use monas::Timestamp;
+use monas_studio::{ListenAddress, Pace, Scene, SceneEvent, Studio, StudioSettings, TapeRun};
 use monas_tape::Recording;
 
 use crate::input::recorded_charts;
@@ -58,6 +59,16 @@ impl ListenArgument {
     pub(crate) fn is_given(&self) -> bool {
         self.listen.is_some() || !self.origins.is_empty() || self.allow_control
     }
+
+    /// For the studio of a tape.
+    pub(crate) fn require_no_control(&self) -> Result<(), CommandFailure> {
+        match self.allow_control {
+            true => {
+                Err(CommandFailure::Usage("--allow-control is for a run; a tape cannot be changed".into()))
+            }
+            false => Ok(()),
+        }
+    }
 }
 
 /// Serves the studio of a run until Ctrl-C.
@@ -68,12 +79,11 @@ pub(crate) fn execute(
     let format = arguments.format.value;
     let interrupt = Interrupt::for_console(console).map_err(|error| CommandFailure::failed(format, error))?;
     let _studio = match &arguments.tape {
-        Some(_) if arguments.listen.allow_control => {
-            return Err(CommandFailure::Usage(
-                "--allow-control is for a run; a tape cannot be changed".into(),
-            ));
+        Some(tape) => {
+            arguments.listen.require_no_control()?;
+            let tape = open_tape(tape, format, console)?;
+            serve_tape(tape, arguments.beside.as_deref(), &arguments.listen, format, console)?
         }
-        Some(tape) => serve_tape(tape, arguments.beside.as_deref(), &arguments.listen, format, console)?,
         None => {
             let selector = RunSelector::of(arguments.run.clone(), None, arguments.format);
             serve(&connection::socket(&selector)?, &arguments.listen, None, format, console)?
@@ -104,15 +114,30 @@ fn announce(studio: Studio, console: &mut CommandOutput<'_>) -> Result<Studio, C
     Ok(studio)
 }
 
+/// Serves the studio of a replayed tape with marks at the differences, until Ctrl-C.
+pub(crate) fn view_replay(
+    tape: &Path,
+    differences: Vec<(Timestamp, SceneEvent)>,
+    listen: &ListenArgument,
+    format: Format,
+    console: &mut CommandOutput<'_>,
+) -> Result<(), CommandFailure> {
+    let interrupt = Interrupt::for_console(console).map_err(|error| CommandFailure::failed(format, error))?;
+    let mut tape = open_tape(tape, format, console)?;
+    tape.mark(differences);
+    let _studio = serve_tape(tape, None, listen, format, console)?;
+    WallClock::start().wait_until(Duration::MAX, &interrupt);
+    Ok(())
+}
+
 /// Serves the studio of a tape, or of two, and prints its address.
 fn serve_tape(
-    tape: &Path,
+    tape: TapeRun,
     beside: Option<&Path>,
     listen: &ListenArgument,
     format: Format,
     console: &mut CommandOutput<'_>,
 ) -> Result<Studio, CommandFailure> {
-    let tape = open_tape(tape, format, console)?;
     let settings = StudioSettings { listen: listen.listen, ..StudioSettings::default() };
     let studio = match beside {
         None => Studio::of_tape(tape, settings),

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use monas::records::{self, foxglove::Log};
-use monas_studio::{Studio, StudioSettings, TapeChart, TapeRun, TransitionQuestion, Verdict};
+use monas_studio::{SceneEvent, Studio, StudioSettings, TapeChart, TapeRun, TransitionQuestion, Verdict};
 use monas_tape::{Recording, Tape};
 use narukom::{Hub, Timestamp};
 use serde_json::{Value, json};
@@ -196,14 +196,21 @@ fn lasting_events_are_marked_where_they_begin() {
         );
     }
     tape.finish().unwrap();
-    let run = TapeRun::new("events", Recording::open(&path).unwrap(), &[], Some(Arc::new(Notes))).unwrap();
+    let mut run =
+        TapeRun::new("events", Recording::open(&path).unwrap(), &[], Some(Arc::new(Notes))).unwrap();
+    let kind = "difference".to_owned();
+    run.mark([(
+        Timestamp::from_nanos(2_500_000_000),
+        SceneEvent { kind, text: "marked".into(), lasts: false },
+    )]);
     let listen = Some("127.0.0.1:0".parse().unwrap());
     let studio = Studio::of_tape(run, StudioSettings { listen, ..StudioSettings::default() }).unwrap();
     let events = Viewer::open(&studio)
         .unwrap()
         .wait(|message| Some(message["tape"]["events"].clone()).filter(Value::is_array));
     let times: Vec<f64> = events.as_array().unwrap().iter().filter_map(|event| event["t"].as_f64()).collect();
-    assert_eq!(times, [1.0, 3.0, 4.0, 5.0]);
+    assert_eq!(times, [1.0, 2.5, 3.0, 4.0, 5.0]);
+    assert_eq!(events[1], json!({"t": 2.5, "kind": "difference", "text": "marked"}));
 }
 
 /// The number of the transition from off to on, whose guard reads a note and a timer.
