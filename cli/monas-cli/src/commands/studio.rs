@@ -1,6 +1,8 @@
 //! `monas studio`: a view of a run or of a tape in the browser.
 
 #[cfg(feature = "soccer")]
+mod robot_cameras;
+#[cfg(feature = "soccer")]
 mod soccer_field;
 
 use std::path::{Path, PathBuf};

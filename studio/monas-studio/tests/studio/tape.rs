@@ -132,6 +132,17 @@ fn look(viewer: &mut Viewer, seconds: f64) -> (Value, Value) {
 }
 
 #[test]
+fn the_images_of_a_moment_are_those_of_the_tape() {
+    let (_studio, mut viewer, _) = open(6);
+    viewer.send(json!({"type": "camera", "host": "robot"}));
+    for (time, url) in [(5.5, "bm90ZSA1"), (2.5, "bm90ZSAy")] {
+        viewer.send(json!({"type": "seek", "seconds": time}));
+        let url = json!(format!("data:image/png;base64,{url}"));
+        viewer.wait(|message| (message["camera"]["images"][0]["url"] == url).then_some(()));
+    }
+}
+
+#[test]
 fn a_moment_is_the_same_whether_it_is_reached_forwards_or_backwards() {
     let (_studio, mut viewer, tape) = open(6);
     assert_eq!((&tape["begin"], &tape["end"]), (&json!(1.0), &json!(6.0)));

@@ -6,11 +6,13 @@ use std::f64::consts::PI;
 use monas_robot::{Posture, Sensors};
 use monas_sim::messages::Incident;
 use monas_studio::{
-    Banner, Belief, Body, Ground, GroundMark, Scene, SceneAction, SceneEvent, SceneMessages, SceneObject,
-    ScenePicture,
+    Banner, Belief, Body, Cameras, Ground, GroundMark, Scene, SceneAction, SceneEvent, SceneMessages,
+    SceneObject, ScenePicture,
 };
 use prost::Message;
 use serde_json::{Value, json};
+
+use super::robot_cameras::RobotCameras;
 
 const TRUTH: &str = "sim/truth";
 const SCORE: &str = "sim/score";
@@ -50,6 +52,10 @@ impl Scene for SoccerField {
         let text = Incident::decode(bytes).ok()?.text;
         let kind = text.split([' ', ':']).next().unwrap_or_default().to_owned();
         Some(SceneEvent { kind, text, lasts: false })
+    }
+
+    fn cameras(&self) -> Option<&dyn Cameras> {
+        Some(&RobotCameras)
     }
 
     fn draw(&self, messages: &SceneMessages<'_>) -> ScenePicture {

@@ -13,10 +13,10 @@ use zune_jpeg::zune_core::options::DecoderOptions;
 const LARGEST: usize = 4096;
 
 /// An image with three bytes for each pixel.
-pub(super) struct RgbImage {
-    pub(super) width: usize,
-    pub(super) height: usize,
-    pub(super) bytes: Vec<u8>,
+pub(crate) struct RgbImage {
+    pub(crate) width: usize,
+    pub(crate) height: usize,
+    pub(crate) bytes: Vec<u8>,
 }
 
 impl RgbImage {
@@ -69,16 +69,22 @@ impl RgbImage {
 
     /// Writes a PNG.
     pub(super) fn write(&self, file: &Path) -> Result<(), String> {
+        monas_files::write(file, &self.to_png()?).map_err(|error| error.to_string())
+    }
+
+    /// The image as PNG.
+    pub(crate) fn to_png(&self) -> Result<Vec<u8>, String> {
         let mut content = Vec::new();
         let mut encoder = png::Encoder::new(&mut content, self.width as u32, self.height as u32);
         encoder.set_color(ColorType::Rgb);
         encoder.set_depth(BitDepth::Eight);
+        encoder.set_compression(png::Compression::Fast);
         let written = encoder.write_header().and_then(|mut writer| {
             writer.write_image_data(&self.bytes)?;
             writer.finish()
         });
         written.map_err(|error| error.to_string())?;
-        monas_files::write(file, &content).map_err(|error| error.to_string())
+        Ok(content)
     }
 }
 
