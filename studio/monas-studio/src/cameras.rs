@@ -16,8 +16,8 @@ pub trait Cameras: Send + Sync {
     /// The names of the cameras, in the order of their images.
     fn names(&self) -> &[&'static str];
 
-    /// The images of a message from its protobuf encoding, as PNG, one for each camera; none if they
-    /// cannot be read.
+    /// The images of a message from its protobuf encoding, as PNG, one for each camera; none if
+    /// they cannot be read.
     fn images(&self, bytes: &[u8]) -> Option<Vec<Vec<u8>>>;
 }
 

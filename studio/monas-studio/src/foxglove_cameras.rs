@@ -11,7 +11,7 @@ use crate::foxglove_views::channel;
 use crate::scene_update::messages::CompressedImage;
 use crate::scene_update::timestamp;
 
-/// The channels of the cameras that a client was told of: one for each camera of each host.
+/// The channels of the cameras that are advertised to a client, one for each camera of each host.
 #[derive(Default)]
 pub(crate) struct CameraChannels {
     /// The topic with the images.

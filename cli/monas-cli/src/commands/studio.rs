@@ -1,10 +1,5 @@
 //! `monas studio`: a view of a run or of a tape in the browser.
 
-#[cfg(feature = "soccer")]
-mod robot_cameras;
-#[cfg(feature = "soccer")]
-mod soccer_field;
-
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
@@ -176,7 +171,7 @@ fn open_tape(
 /// What this program draws from above.
 #[cfg(feature = "soccer")]
 pub(crate) fn scene() -> Option<Arc<dyn Scene>> {
-    Some(Arc::new(soccer_field::SoccerField))
+    Some(Arc::new(monas_scene::SoccerField))
 }
 
 #[cfg(not(feature = "soccer"))]

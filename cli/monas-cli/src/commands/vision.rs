@@ -1,6 +1,6 @@
 //! `monas vision`: what images of files show.
 
-pub(crate) mod image_file;
+mod image_file;
 
 use std::path::{Path, PathBuf};
 

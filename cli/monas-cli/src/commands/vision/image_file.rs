@@ -3,7 +3,7 @@
 use std::io::Cursor;
 use std::path::Path;
 
-use png::{BitDepth, ColorType, Transformations};
+use png::{ColorType, Transformations};
 use zune_jpeg::JpegDecoder;
 use zune_jpeg::zune_core::bytestream::ZCursor;
 use zune_jpeg::zune_core::colorspace::ColorSpace;
@@ -13,10 +13,10 @@ use zune_jpeg::zune_core::options::DecoderOptions;
 const LARGEST: usize = 4096;
 
 /// An image with three bytes for each pixel.
-pub(crate) struct RgbImage {
-    pub(crate) width: usize,
-    pub(crate) height: usize,
-    pub(crate) bytes: Vec<u8>,
+pub(super) struct RgbImage {
+    pub(super) width: usize,
+    pub(super) height: usize,
+    pub(super) bytes: Vec<u8>,
 }
 
 impl RgbImage {
@@ -69,22 +69,8 @@ impl RgbImage {
 
     /// Writes a PNG.
     pub(super) fn write(&self, file: &Path) -> Result<(), String> {
-        monas_files::write(file, &self.to_png()?).map_err(|error| error.to_string())
-    }
-
-    /// The image as PNG.
-    pub(crate) fn to_png(&self) -> Result<Vec<u8>, String> {
-        let mut content = Vec::new();
-        let mut encoder = png::Encoder::new(&mut content, self.width as u32, self.height as u32);
-        encoder.set_color(ColorType::Rgb);
-        encoder.set_depth(BitDepth::Eight);
-        encoder.set_compression(png::Compression::Fast);
-        let written = encoder.write_header().and_then(|mut writer| {
-            writer.write_image_data(&self.bytes)?;
-            writer.finish()
-        });
-        written.map_err(|error| error.to_string())?;
-        Ok(content)
+        let content = monas_scene::encode_png(self.width, self.height, &self.bytes)?;
+        monas_files::write(file, &content).map_err(|error| error.to_string())
     }
 }
 

@@ -12,7 +12,7 @@ use monas_studio::{
 use prost::Message;
 use serde_json::{Value, json};
 
-use super::robot_cameras::RobotCameras;
+use crate::robot_cameras::RobotCameras;
 
 const TRUTH: &str = "sim/truth";
 const SCORE: &str = "sim/score";
@@ -32,7 +32,8 @@ const GOAL_DEPTH: f64 = 0.4;
 
 /// Draws the ground truth of the simulated field if there is one, what each robot believes, and the
 /// score.
-pub(super) struct SoccerField;
+#[derive(Clone, Copy, Debug, Default)]
+pub struct SoccerField;
 
 impl Scene for SoccerField {
     fn topics(&self) -> &[&'static str] {

@@ -5,7 +5,7 @@ use monas_robot::{Image, Images};
 use monas_studio::Cameras;
 use prost::Message;
 
-use crate::commands::vision::image_file::RgbImage;
+use crate::png_image::encode_png;
 
 /// The two cameras of a head.
 pub(super) struct RobotCameras;
@@ -29,8 +29,8 @@ fn png(image: &Image) -> Option<Vec<u8>> {
     let (width, height) = (image.width as usize, image.height as usize);
     let pixels = monas_vision::Image::new(width, height, &image.pixels).ok()?;
     let places = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
-    let bytes = places.flat_map(|(x, y)| monas_vision::rgb_of_yuv(pixels.yuv(x, y))).collect();
-    RgbImage { width, height, bytes }.to_png().ok()
+    let bytes: Vec<u8> = places.flat_map(|(x, y)| monas_vision::rgb_of_yuv(pixels.yuv(x, y))).collect();
+    encode_png(width, height, &bytes).ok()
 }
 
 #[cfg(test)]
@@ -41,8 +41,8 @@ mod tests {
     fn an_image_of_the_message_becomes_a_png_with_its_colours() {
         let orange = [255, 128, 0];
         let mut pixels = Vec::new();
-        monas_vision::yuv422_of_rgb(4, &orange.repeat(4 * 4), &mut pixels);
-        let image = Image { width: 4, height: 4, pixels, ..Image::default() };
+        monas_vision::yuv422_of_rgb(16, &orange.repeat(16 * 16), &mut pixels);
+        let image = Image { width: 16, height: 16, pixels, ..Image::default() };
         let images = Images { images: vec![image.clone()], ..Images::default() };
         let png = RobotCameras.images(&images.encode_to_vec()).unwrap().remove(0);
         let mut decoder = png::Decoder::new(std::io::Cursor::new(png)).read_info().unwrap();
