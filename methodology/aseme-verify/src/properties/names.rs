@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use yase::diagnostic::nearest;
+use yase::diagnostic::{Suggestions, nearest};
 use yase::expression::{
     CompiledTrigger, EventId, EventInterner, Expression, ExpressionKind, Guard, Name, NameScope,
     ScriptInterner, TransitionExpression, parse_transition_at,
@@ -147,6 +147,7 @@ fn awaited(name: &Name, chart: &CompiledChart, vocabulary: &TypeEnvironment) -> 
         events: &mut events,
         scripts: &mut ScriptInterner::new(),
         states: &|_| None,
+        suggestions: &Suggestions::default(),
     });
     match compiled.ok()?.trigger? {
         CompiledTrigger::OneOf(ids) if ids.len() == 1 => {
@@ -214,6 +215,7 @@ pub fn guards(
             events: &mut EventInterner::new(),
             scripts: &mut ScriptInterner::new(),
             states: &|_| None,
+            suggestions: &Suggestions::default(),
         });
         match compiled {
             Ok(compiled) => guards.push(compiled.guard),

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use yase::diagnostic::nearest;
+use yase::diagnostic::{Suggestions, nearest};
 use yase::expression::{
     Action, ActionKind, Effect, EventInterner, Guard, Name, NameScope, Origin, Path, ScriptInterner,
     TextPosition, compile_actions, parse_actions_at, parse_transition_at,
@@ -35,7 +35,13 @@ impl ScenarioText {
         vocabulary: &TypeEnvironment,
     ) -> Result<Vec<ScenarioStep>, Vec<Diagnostic>> {
         let blanked = text::without_comments(&self.source.text);
-        let binder = ScenarioBinder { script: self, blanked: &blanked, chart, vocabulary };
+        let binder = ScenarioBinder {
+            script: self,
+            blanked: &blanked,
+            chart,
+            vocabulary,
+            suggestions: Suggestions::default(),
+        };
         let (mut steps, mut found) = (Vec::new(), Vec::new());
         for lines in &self.steps {
             match binder.step(lines) {
@@ -55,6 +61,7 @@ struct ScenarioBinder<'a> {
     blanked: &'a str,
     chart: &'a CompiledChart,
     vocabulary: &'a TypeEnvironment,
+    suggestions: Suggestions,
 }
 
 /// The parsed content of an indented line.
@@ -238,6 +245,7 @@ impl ScenarioBinder<'_> {
             events,
             scripts,
             states: &|_| None,
+            suggestions: &self.suggestions,
         }
     }
 
