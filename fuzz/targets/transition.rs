@@ -2,8 +2,11 @@
 //! terminates.
 #![no_main]
 
+use std::collections::BTreeSet;
+
 use libfuzzer_sys::fuzz_target;
 use monas_fuzz::assert_findings_fit;
+use yase::diagnostic::Suggestions;
 use yase::expression::{
     EventInterner, NameScope, ScriptInterner, parse_actions, parse_condition, parse_transition,
 };
@@ -24,7 +27,8 @@ fuzz_target!(|text: &str| {
         assert_eq!(findings, [], "{canonical}");
         assert_eq!(again.to_string(), canonical);
     }
-    let timers: Vec<String> = transition.started_timers().collect();
+    let timers: BTreeSet<String> = transition.started_timers().collect();
+    let timers: Vec<String> = timers.into_iter().collect();
     let mut events = EventInterner::new();
     let compiled = transition.compile(&mut NameScope {
         vocabulary: &vocabulary(),
@@ -33,6 +37,7 @@ fuzz_target!(|text: &str| {
         events: &mut events,
         scripts: &mut ScriptInterner::new(),
         states: &|_| None,
+        suggestions: &Suggestions::default(),
     });
     if let Err(findings) = compiled {
         assert!(!findings.is_empty());

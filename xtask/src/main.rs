@@ -2,6 +2,7 @@
 //! Monas.
 //!
 //! - `tidy` checks the rules of ARCHITECTURE.md and STYLE.md.
+//! - `bodies` links each crate of a body under `robots/` into the command `monas`.
 //! - `faults` injects classic faults into the engine, one at a time, and requires that the tests
 //!   detect each.
 //! - `project` creates a project with `monas new`, builds, tests and runs it, and extends it.
@@ -20,6 +21,7 @@ cargo xtask NAME
 
   tidy               check layers, absences, dependencies, texts, documents, prose, sizes and circles
   tidy --allowances  print the table of allowances for today's sources
+  bodies             link each crate of a body under robots/ into the command `monas`
   faults             inject classic faults into a copy and check that the tests detect each
   project            create a project with `monas new`, build, test, run and extend it
   season             play a season and write its golden table (tests/golden)
@@ -31,6 +33,7 @@ fn main() -> ExitCode {
     let result = match arguments[..] {
         ["tidy"] => tidy::run(&root()),
         ["tidy", "--allowances"] => tidy::allowances(&root()),
+        ["bodies"] => tidy::link_bodies(&root()),
         ["faults"] => faults::run(&root()),
         ["project"] => project::run(&root()),
         ["season"] => season::season(&root(), &[]),

@@ -4,6 +4,7 @@
 mod absences;
 mod allowances;
 mod body_kinds;
+mod body_links;
 mod circles;
 mod columns;
 mod documents;
@@ -25,6 +26,8 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use workspace::Workspace;
+
+pub(crate) use body_links::run as link_bodies;
 
 /// A violation of the project's rules.
 #[derive(PartialEq, Eq, PartialOrd, Ord, Debug)]
@@ -79,6 +82,7 @@ fn check(workspace: &Workspace) -> Vec<TidyFinding> {
     findings.extend(texts::check(workspace));
     findings.extend(documents::check(workspace));
     findings.extend(body_kinds::check(workspace));
+    findings.extend(body_links::check(workspace));
     findings.extend(road::check(workspace));
     findings.extend(allowances::check(workspace));
     findings.sort();

@@ -2,11 +2,12 @@
 
 use super::Exported;
 use yase::diagnostic::{Diagnostic, Span};
-use yase::statechart::{NodeId, NodeKind, Statechart, Transition};
+use yase::statechart::{BriefNames, NodeId, NodeKind, Statechart, Transition};
 
 /// The losses recorded for one tool.
 pub(crate) struct LossReport<'a> {
     chart: &'a Statechart,
+    names: BriefNames<'a>,
     tool: &'static str,
     found: Vec<Diagnostic>,
 }
@@ -22,7 +23,7 @@ impl<'a> LossReport<'a> {
             let lost = vec![Diagnostic::error("E0708", Span::default(), message)];
             return Err(Exported { text: String::new(), lost });
         }
-        let mut lost = LossReport { chart, tool, found: Vec::new() };
+        let mut lost = LossReport { chart, names: BriefNames::new(chart), tool, found: Vec::new() };
         for (id, transition) in chart.transitions() {
             if !has_ends(chart, transition) {
                 lost.report_omitted(format!("transition {} connects nodes that do not exist", id.0));
@@ -34,14 +35,14 @@ impl<'a> LossReport<'a> {
     /// Reports a kind of node that the tool does not have.
     pub(crate) fn kind(&mut self, id: NodeId, shown_as: &str) {
         let word = super::notation::kind_word(self.chart.node(id).kind);
-        let (path, tool) = (self.chart.path(id), self.tool);
+        let (path, tool) = (self.names.name(id), self.tool);
         let message = format!("`{path}` has the kind {word}; in {tool} it is {shown_as}");
         self.found.push(Diagnostic::warning("E0701", Span::default(), message));
     }
 
     /// Reports a property of a node.
     pub(crate) fn of_node(&mut self, id: NodeId, what: &str) {
-        self.warn("E0702", format!("{what} of `{}`", self.chart.path(id)));
+        self.warn("E0702", format!("{what} of `{}`", self.names.name(id)));
     }
 
     /// Reports a property of a transition.
@@ -58,7 +59,7 @@ impl<'a> LossReport<'a> {
 
     /// Reports an end of a transition that is not a state in the tool.
     pub(crate) fn end(&mut self, id: NodeId) {
-        self.warn("E0705", format!("`{}` as an end of transitions", self.chart.path(id)));
+        self.warn("E0705", format!("`{}` as an end of transitions", self.names.name(id)));
     }
 
     /// Reports an omitted transition with its reason.
@@ -79,7 +80,7 @@ impl<'a> LossReport<'a> {
 
     /// A transition as diagnostics name it.
     pub(crate) fn arrow(&self, transition: &Transition) -> String {
-        format!("`{}` -> `{}`", self.chart.path(transition.source), self.chart.path(transition.target))
+        format!("`{}` -> `{}`", self.names.name(transition.source), self.names.name(transition.target))
     }
 
     /// The text with all losses, without duplicates.

@@ -20,6 +20,7 @@
 //!   without comparison of names.
 //!
 //! ```
+//! use yase_expression::diagnostic::Suggestions;
 //! use yase_expression::*;
 //! use yase_expression::vocabulary::*;
 //!
@@ -56,6 +57,7 @@
 //!     events: &mut events,
 //!     scripts: &mut scripts,
 //!     states: &|_| None,
+//!     suggestions: &Suggestions::default(),
 //! });
 //! let guard = compiled.expect("every name is known").guard.expect("it has a guard");
 //! assert_eq!(guard.reads(), [TopicId(0)]);

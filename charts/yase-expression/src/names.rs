@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::constant::Constant;
+use crate::diagnostic::Suggestions;
 use crate::node_id::NodeId;
 use crate::vocabulary::{TopicId, TypeEnvironment};
 
@@ -12,8 +13,8 @@ pub struct NameScope<'a> {
     pub vocabulary: &'a TypeEnvironment,
     /// The constants of the model.
     pub constants: &'a [Constant],
-    /// The timers that actions start on the blackboard of the expression's scope; the index of a
-    /// name is its [`TimerId`](super::TimerId).
+    /// The timers that actions start on the blackboard of the expression's scope, in alphabetical
+    /// order; the index of a name is its [`TimerId`](super::TimerId).
     pub timers: &'a [String],
     /// The events of the chart; new names are added.
     pub events: &'a mut EventInterner,
@@ -21,6 +22,8 @@ pub struct NameScope<'a> {
     pub scripts: &'a mut ScriptInterner,
     /// Finds the state with a path (without blanks, `~` for ω).
     pub states: &'a dyn Fn(&str) -> Option<NodeId>,
+    /// Limits the effort for names that do not exist.
+    pub suggestions: &'a Suggestions,
 }
 
 /// A script, an index into a [`ScriptInterner`].

@@ -13,7 +13,7 @@ use super::lexical::is_id;
 use super::xml::{NAMESPACE, is_xml};
 use yase::diagnostic::{Diagnostic, Span};
 use yase::expression::{Action, ActionKind, Path, Trigger};
-use yase::statechart::{Node, NodeId, NodeKind, Statechart, Transition, TransitionId};
+use yase::statechart::{BriefNames, Node, NodeId, NodeKind, Statechart, Transition, TransitionId};
 
 pub(crate) use content::block_text;
 use content::{payload_elements, source_into};
@@ -53,6 +53,7 @@ struct DocumentWriter<'a> {
     chart: &'a Statechart,
     outgoing: BTreeMap<NodeId, Vec<TransitionId>>,
     incoming: BTreeMap<NodeId, usize>,
+    names: BriefNames<'a>,
     writer: ElementWriter,
     refused: Vec<Diagnostic>,
 }
@@ -68,6 +69,7 @@ impl<'a> DocumentWriter<'a> {
         DocumentWriter {
             document,
             chart,
+            names: BriefNames::new(chart),
             outgoing,
             incoming,
             writer: ElementWriter::new(),
@@ -102,10 +104,10 @@ impl<'a> DocumentWriter<'a> {
                 continue;
             }
             if !is_id(&node.name) {
-                self.refuse(format!("`{}` has a name that cannot be an id in SCXML", self.chart.path(id)));
+                self.refuse(format!("`{}` has a name that cannot be an id in SCXML", self.names.name(id)));
             }
             if let Some(other) = seen.insert(node.name.as_str(), id) {
-                let (first, second) = (self.chart.path(other), self.chart.path(id));
+                let (first, second) = (self.names.name(other), self.names.name(id));
                 self.refuse(format!("`{first}` and `{second}` have one name, and ids in SCXML are unique"));
             }
         }
@@ -114,7 +116,7 @@ impl<'a> DocumentWriter<'a> {
     /// Checks all segments.
     fn segments(&mut self) {
         for (_, transition) in self.chart.transitions() {
-            let source = self.chart.path(transition.source);
+            let source = self.names.name(transition.source);
             let wrong = [
                 ("a weight", transition.weight.is_some()),
                 ("a priority", transition.priority != 0),
@@ -189,7 +191,7 @@ impl<'a> DocumentWriter<'a> {
             NodeKind::DeepHistory => self.history("deep", id),
             NodeKind::Start | NodeKind::Fork => {}
             kind => {
-                let path = self.chart.path(id);
+                let path = self.names.name(id);
                 self.refuse(format!("`{path}` is a {kind:?}, which SCXML cannot represent"));
                 // What its transitions lose is listed too; the document is refused already.
                 for transition in self.out_of(id) {
@@ -240,7 +242,7 @@ impl<'a> DocumentWriter<'a> {
             ("deferred events", !node.defer.is_empty()),
         ];
         for (what, _) in features.into_iter().filter(|(_, present)| *present) {
-            let path = self.chart.path(id);
+            let path = self.names.name(id);
             self.refuse(format!("`{path}` has {what}, which SCXML cannot represent"));
         }
     }
@@ -249,7 +251,7 @@ impl<'a> DocumentWriter<'a> {
     fn initial(&mut self, composite: NodeId) -> Option<&'a Transition> {
         let starts = self.chart.children(composite).iter();
         let starts: Vec<_> = starts.filter(|&&child| self.node(child).kind == NodeKind::Start).collect();
-        let path = self.chart.path(composite);
+        let path = self.names.name(composite);
         let &[&start] = starts.as_slice() else {
             self.refuse(format!("`{path}` has {} STARTs; in SCXML it has one", starts.len()));
             return None;
@@ -276,11 +278,11 @@ impl<'a> DocumentWriter<'a> {
     fn node_features_of_connector(&mut self, id: NodeId) {
         let node = self.node(id);
         if !node.name.is_empty() && !is_named(node.kind) {
-            let path = self.chart.path(id);
+            let path = self.names.name(id);
             self.refuse(format!("`{path}` has a name, which SCXML cannot represent"));
         }
         if !node.entry.is_empty() || !node.exit.is_empty() {
-            let path = self.chart.path(id);
+            let path = self.names.name(id);
             self.refuse(format!("`{path}` has actions, which SCXML cannot represent"));
         }
         self.state_features(id);
@@ -296,7 +298,7 @@ impl<'a> DocumentWriter<'a> {
 
     fn history(&mut self, kind: &str, id: NodeId) {
         if self.node(id).parent == Some(Statechart::ROOT) {
-            let path = self.chart.path(id);
+            let path = self.names.name(id);
             self.refuse(format!("`{path}` is a history of the whole document, which SCXML cannot represent"));
         }
         self.node_features_of_connector(id);
@@ -309,14 +311,14 @@ impl<'a> DocumentWriter<'a> {
         let ways = self.out_of(id);
         if let &[way] = ways.as_slice() {
             if way.expression.guard.is_some() || way.expression.trigger.is_some() {
-                let path = self.chart.path(id);
+                let path = self.names.name(id);
                 self.refuse(format!(
                     "the way out of `{path}` has a guard or trigger, which SCXML cannot represent"
                 ));
             }
             self.transition(way);
         } else {
-            let path = self.chart.path(id);
+            let path = self.names.name(id);
             self.refuse(format!("`{path}` has {} ways out; in SCXML it has one", ways.len()));
         }
         self.writer.close();
@@ -338,7 +340,7 @@ impl<'a> DocumentWriter<'a> {
             }
         }
         self.kind_and_target(transition);
-        self.actions(&expression.actions, &self.chart.path(transition.source));
+        self.actions(&expression.actions, &self.names.name(transition.source));
         self.writer.close();
     }
 
@@ -349,7 +351,7 @@ impl<'a> DocumentWriter<'a> {
         }
         if transition.internal {
             if self.node(source).kind != NodeKind::Or {
-                let path = self.chart.path(source);
+                let path = self.names.name(source);
                 self.refuse(format!(
                     "a transition of `{path}` stays inside; in SCXML only a `state` with states in it can have it"
                 ));
@@ -365,7 +367,7 @@ impl<'a> DocumentWriter<'a> {
             Trigger::Any => vec!["*".into()],
             Trigger::OneOf(events) => events.iter().map(Path::text).collect(),
             Trigger::Not(event) => {
-                let source = self.chart.path(transition.source);
+                let source = self.names.name(transition.source);
                 self.refuse(format!("`not {event}` out of `{source}` cannot be said in SCXML"));
                 return;
             }
@@ -386,7 +388,7 @@ impl<'a> DocumentWriter<'a> {
         let mut names = Vec::new();
         for target in targets {
             let node = self.node(target);
-            let path = || self.chart.path(target);
+            let path = || self.names.name(target);
             if !is_named(node.kind) {
                 self.refuse(format!("`{}` cannot be the target of a transition in SCXML", path()));
             } else if node.name.is_empty() {
@@ -399,7 +401,7 @@ impl<'a> DocumentWriter<'a> {
 
     fn branches(&mut self, fork: NodeId) -> Vec<NodeId> {
         self.node_features_of_connector(fork);
-        let path = self.chart.path(fork);
+        let path = self.names.name(fork);
         if self.incoming.get(&fork).copied().unwrap_or(0) > 1 {
             self.refuse(format!("several transitions lead to `{path}`, which SCXML cannot represent"));
         }
@@ -415,7 +417,7 @@ impl<'a> DocumentWriter<'a> {
     fn block(&mut self, tag: &'static str, actions: &[Action], id: NodeId) {
         // A failure in one block does not affect the next, so each script is a separate block.
         let is_script = |action: &Action| matches!(action.kind, ActionKind::Script(_));
-        let path = self.chart.path(id);
+        let path = self.names.name(id);
         for block in actions.chunk_by(|a, b| !is_script(a) && !is_script(b)) {
             self.writer.open(tag);
             self.actions(block, &path);

@@ -133,6 +133,18 @@ impl BitSet {
         self.low.iter().chain(&self.rest).copied()
     }
 
+    /// The members, in ascending order.
+    pub(crate) fn members(&self) -> impl Iterator<Item = usize> {
+        self.words().enumerate().flat_map(|(place, word)| {
+            let mut left = word;
+            std::iter::from_fn(move || {
+                let bit = left.trailing_zeros() as usize;
+                left &= left.wrapping_sub(1);
+                (bit < BITS).then_some(place * BITS + bit)
+            })
+        })
+    }
+
     /// Copies a set of the same capacity.
     #[inline]
     pub(crate) fn copy_from(&mut self, other: &BitSet) {
@@ -243,6 +255,7 @@ mod tests {
     fn a_set_of_bits_is_a_set() {
         for (set, expected) in sets() {
             assert_eq!(members(&set), expected.iter().copied().collect::<Vec<_>>());
+            assert!(set.members().eq(expected.iter().copied()));
             assert_eq!(set.is_empty(), expected.is_empty());
             for number in 0..192 {
                 let next = expected.range(number..).next().copied();

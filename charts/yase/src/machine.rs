@@ -28,7 +28,7 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use crate::compile::CompiledChart;
+use crate::compile::{CompiledChart, NodeIndex};
 use crate::expression::{EventId, EventInterner};
 use crate::host::{Host, Outcome};
 use crate::ids::{Activation, ScopeId};
@@ -350,7 +350,7 @@ impl Machine {
     /// The deadline of a timer of a scope, past or future; none if it is not set.
     pub fn deadline(&self, region: ScopeId, timer: &str) -> Option<Timestamp> {
         let place = self.chart.timers().position(|(board, name)| board == region && name == timer)?;
-        self.run.timers.slots.get(place).copied().flatten().map(|deadline| deadline.moment)
+        self.run.timers.slot(place).map(|deadline| deadline.moment)
     }
 
     /// Whether a message on that topic can affect the chart: each must then be reported with
@@ -372,8 +372,7 @@ impl Machine {
     /// The active nodes in document order, composites before their children.
     pub fn configuration(&self) -> Vec<NodeId> {
         let layout = &self.chart.layout;
-        let mut places: Vec<_> =
-            layout.places().filter(|&place| self.run.active.contains(place.index())).collect();
+        let mut places: Vec<_> = self.run.active.members().map(|place| NodeIndex(place as u32)).collect();
         places.sort_by_key(|&place| layout.rank(place));
         places.into_iter().map(|place| layout.node(place)).collect()
     }

@@ -3,12 +3,14 @@
 //! Model files, formulas and editors produce a [`Statechart`]; checks, drawings and the compiler
 //! read it. It holds parsed expressions, not compiled ones, and has no behaviour.
 
+mod brief_names;
 mod layout;
 mod state_names;
 
 use std::sync::Arc;
 use std::time::Duration;
 
+pub use brief_names::BriefNames;
 pub use layout::{Frame, Layout, Point};
 pub use state_names::{StateNames, UnknownState};
 

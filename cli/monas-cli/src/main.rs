@@ -1,9 +1,8 @@
 //! The command `monas` with the activities of the soccer team.
 
+mod bodies;
 mod statecharts;
 
-use monas_nao as _; // bodies register themselves at link time
-use monas_rcsssmj as _;
 use monas_soccer as _; // its activities, topics and functions register themselves at link time
 
 /// Counts allocations, so that `monas top` can mark activities that leak.

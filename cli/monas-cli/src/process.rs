@@ -23,6 +23,8 @@ pub(crate) fn main() -> Exit {
     delegate::delegate();
     #[cfg(target_os = "linux")]
     let _crashes = CrashReport::install();
+    #[cfg(target_os = "linux")]
+    report_full_files_as_errors();
     // The caller decides how to handle a panic; the log has its location.
     panic::set_hook(Box::new(|panic| tracing::error!("{panic}")));
     let (mut out, mut stderr) = (io::stdout(), io::stderr());
@@ -44,4 +46,13 @@ pub(crate) fn main() -> Exit {
     log.iter().for_each(|log| log.end());
     crash_report::end();
     exit
+}
+
+/// Lets writes beyond the limit on the size of files (`ulimit -f`) fail like those to a full disk,
+/// instead of ending the process.
+#[cfg(target_os = "linux")]
+fn report_full_files_as_errors() {
+    if let Err(error) = signal_hook::flag::register(libc::SIGXFSZ, Default::default()) {
+        tracing::warn!("a limit on the size of files will end the process: {error}");
+    }
 }

@@ -182,6 +182,11 @@ impl CheckedModel {
         self.chart.node(node).parent.is_some_and(|parent| self.kind(parent) == NodeKind::And)
     }
 
+    /// The number of a node in a walk through the tree, and the number after those inside it.
+    pub(crate) fn extent(&self, node: NodeId) -> (u32, u32) {
+        self.extents[node.0 as usize]
+    }
+
     /// The AND that separates two nodes into different regions, with these regions.
     pub(crate) fn apart(&self, one: NodeId, other: NodeId) -> Option<(NodeId, NodeId, NodeId)> {
         let way = |node: NodeId| -> Vec<NodeId> {

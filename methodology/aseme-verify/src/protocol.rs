@@ -15,18 +15,21 @@
 mod part;
 mod trace_inclusion;
 
-use yase::expression::{Expression, parse_transition};
+use yase::expression::{Expression, TextPosition, parse_transition};
 use yase::{Diagnostic, Span};
 use yase_explore::explore;
+use yase_export::notation::depth_first;
 
 use crate::abstraction::Abstraction;
 use crate::checked_model;
 use crate::conformance::{DifferenceKind, differences_of_what_is_left_early};
+use crate::diagnostic_names::DiagnosticNames;
 use crate::exploration_extent::ExplorationExtent;
 use crate::logic::GuardSolver;
 use aseme::liveness::{self, Liveness};
+use aseme::srm::Srm;
 use aseme_models::aip::{Aip, Participant, Protocol};
-use aseme_models::iac::{Iac, IacTransition};
+use aseme_models::iac::{ChartKind, Iac, IacTransition};
 use aseme_models::transformations::{
     ShapeMatch, conditions, participant_formula, participants, protocol_formulas, same_shape,
 };
@@ -69,7 +72,7 @@ pub fn chart_conforms(eac: &Iac, aip: &Aip) -> Conformance {
             (Some(&node), Some(part)) => chart_part(eac, node, expected, index, part, &mut found),
             _ => {
                 let message = format!("`{name}` of the protocol `{}` is missing in its chart", protocol.name);
-                found.report("E0861", Span::default(), message, "each participant has its own region");
+                found.report("E0861", root(eac), message, "each participant has its own region");
             }
         }
     }
@@ -78,7 +81,8 @@ pub fn chart_conforms(eac: &Iac, aip: &Aip) -> Conformance {
         found.report("E0861", eac.nodes[part].place.0, message, "add it to the participants, or remove it");
     }
     if found.is_given() {
-        traces(eac, &liveness::parse(&protocol_formulas(aip, protocol).0).0, &protocol.name, &mut found);
+        let formulas = protocol_formulas(aip, protocol).0;
+        traces(eac, &liveness::parse(&formulas).0, &protocol.name, root(eac), &mut found);
     }
     found
 }
@@ -102,7 +106,7 @@ pub fn player_conforms(player: &Iac, eac: &Iac, aip: &Aip) -> Conformance {
             if let (true, Some(formulas)) = (found.findings.len() == before, formulas) {
                 let alone = part::alone(player, place, eac, part);
                 let liveness = liveness::parse(&formulas).0;
-                traces(&alone, &liveness, name, &mut found);
+                traces(&alone, &liveness, name, player.nodes[place].place.0, &mut found);
                 trace_inclusion::in_whole(player, place, (eac, part), &liveness, &mut found);
             }
         }
@@ -110,9 +114,38 @@ pub fn player_conforms(player: &Iac, eac: &Iac, aip: &Aip) -> Conformance {
     if !takes_part {
         let message = format!("`{}` takes no part in the protocol `{}`", player.name, protocol.name);
         let hint = "a part is a composite with the name of a participant: merge the protocol's chart into the player's";
-        found.report("E0861", Span::default(), message, hint);
+        found.report("E0861", root(player), message, hint);
     }
     found
+}
+
+/// The chart of a role, with the spans of its nodes and transitions in the role's text.
+///
+/// # Errors
+/// The findings of a role that has no chart.
+pub fn role_chart(role: &Srm) -> Result<Iac, Vec<Diagnostic>> {
+    let (model, found) = checked_model::of_role(role);
+    if found.iter().any(Diagnostic::is_error) {
+        return Err(found);
+    }
+    let mut chart = Iac::from_statechart(&model.chart, ChartKind::Intra);
+    for (node, id) in chart.nodes.iter_mut().zip(depth_first(&model.chart)) {
+        node.place = TextPosition(model.places.node(id));
+    }
+    for (transition, (id, _)) in chart.transitions.iter_mut().zip(model.chart.transitions()) {
+        transition.place = TextPosition(model.places.transition(id));
+    }
+    Ok(chart)
+}
+
+/// The span of a whole chart.
+fn root(chart: &Iac) -> Span {
+    chart.nodes.first().map_or(Span::default(), |node| node.place.0)
+}
+
+/// The names of a chart's nodes in findings.
+fn names(chart: &Iac) -> DiagnosticNames {
+    DiagnosticNames::new(&chart.to_statechart().0)
 }
 
 /// The parts of a protocol's chart, each with whether a player takes it.
@@ -127,9 +160,7 @@ fn protocol_of<'a>(eac: &Iac, aip: &'a Aip, found: &mut Conformance) -> Option<&
     if protocol.is_none() {
         let names = aip.protocols.iter().map(|protocol| protocol.name.as_str());
         let message = format!("there is no protocol `{}`", eac.name);
-        found
-            .findings
-            .push(Diagnostic::error("E0860", Span::default(), message).with_nearest(&eac.name, names));
+        found.findings.push(Diagnostic::error("E0860", root(eac), message).with_nearest(&eac.name, names));
     }
     protocol
 }
@@ -170,6 +201,8 @@ fn chart_part(
 /// The transitions that lead into a composite and out of it; one from the composite to itself
 /// enters it again.
 struct BoundaryTransitions<'a> {
+    /// The span of the composite.
+    place: Span,
     into: Vec<&'a IacTransition>,
     out: Vec<&'a IacTransition>,
 }
@@ -182,7 +215,7 @@ impl BoundaryTransitions<'_> {
         let crossing = |it: &&IacTransition| inside(it.source) != inside(it.target) || is_repetition(it);
         let (into, out) =
             chart.transitions.iter().filter(crossing).partition(|it: &&IacTransition| inside(it.target));
-        BoundaryTransitions { into, out }
+        BoundaryTransitions { place: chart.nodes[node].place.0, into, out }
     }
 
     fn engaged_by(&self, chart: &Iac, name: &str, rule: &Expression, found: &mut Conformance) {
@@ -201,7 +234,7 @@ impl BoundaryTransitions<'_> {
         let leads_out = |guard: Expression| logic.implies(outcome, &guard);
         if !self.out.iter().filter_map(|way| guard(way)).any(leads_out) {
             let message = format!("`{name}` has no exit for the outcome `{outcome}`");
-            let place = self.out.first().map_or(Span::default(), |way| way.place.0);
+            let place = self.out.first().map_or(self.place, |way| way.place.0);
             found.report("E0864", place, message, "add a transition out of it with the outcome as guard");
         }
     }
@@ -225,7 +258,7 @@ fn guard(transition: &IacTransition) -> Option<Expression> {
 
 /// Explores a chart and compares its traces with formulas. A trace that ends early by an exit is
 /// allowed.
-fn traces(chart: &Iac, liveness: &Liveness, name: &str, found: &mut Conformance) {
+fn traces(chart: &Iac, liveness: &Liveness, name: &str, place: Span, found: &mut Conformance) {
     let (subject, made) = checked_model::of_chart(chart);
     let abstraction = match Abstraction::new(&subject) {
         Ok(abstraction) if !made.iter().any(Diagnostic::is_error) => abstraction,
@@ -239,12 +272,16 @@ fn traces(chart: &Iac, liveness: &Liveness, name: &str, found: &mut Conformance)
     let (differences, is_whole) = differences_of_what_is_left_early(&subject.chart, &explored, liveness);
     if !explored.is_finished() || !is_whole {
         let message = format!("`{name}` is too large: not all of its traces are known");
-        return found.report("E0869", Span::default(), message, "make parts of it protocols of their own");
+        return found.report("E0869", place, message, "make parts of it protocols of their own");
     }
     for difference in differences {
         let before = match difference.before.as_slice() {
             [] => String::from("at the beginning"),
             names => format!("after `{}`", names.join(" ")),
+        };
+        let place = match difference.kind {
+            DifferenceKind::NotAllowed(node) => subject.places.node(node),
+            _ => place,
         };
         let (code, what) = match difference.kind {
             DifferenceKind::NotAllowed(node) => (
@@ -264,6 +301,6 @@ fn traces(chart: &Iac, liveness: &Liveness, name: &str, found: &mut Conformance)
             }
         };
         let message = format!("in `{name}`, {before} {what}");
-        found.report(code, Span::default(), message, "a guard or transition differs from the protocol");
+        found.report(code, place, message, "a guard or transition differs from the protocol");
     }
 }

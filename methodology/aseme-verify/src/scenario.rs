@@ -24,7 +24,7 @@
 //! |---|---|
 //! | `start` | the chart is started |
 //! | `messages` | messages arrive and nothing else happens |
-//! | `event NAME` | an event arrives |
+//! | `event NAME` | an event arrives, spelled as in a trigger (`kick`, `ready.Signal.Ready`) |
 //! | `return STATE`, `ongoing STATE`, `fail STATE` | the state's activity completes, requests another call, or fails |
 //! | `wait 100ms` | time passes; `timer NAME` waits until that timer expires |
 //!
@@ -53,7 +53,7 @@ mod tests;
 use std::sync::Arc;
 use std::time::Duration;
 
-use yase::expression::{Effect, Guard};
+use yase::expression::{Effect, EventId, Guard};
 use yase::{NodeId, Outcome, Source, Span, TopicId};
 
 /// The text of a scenario.
@@ -126,8 +126,9 @@ pub enum StepStimulus {
     Start,
     /// Messages arrive.
     Messages,
-    /// An event arrives.
-    Event(String),
+    /// An event arrives. The message of the own host that an event stands for is part of
+    /// [`ScenarioStep::data`], with the stimulus [`Messages`](StepStimulus::Messages).
+    Event(EventId),
     /// The activity of a state returns.
     Return(NodeId, Outcome),
     /// Time passes.

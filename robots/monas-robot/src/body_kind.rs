@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::fmt;
 
-use crate::{Disturbances, Error, ErrorKind, Robot, WrappedBody};
+use crate::{Disturbances, Error, ErrorKind, Robot, Skill, WrappedBody};
 
 /// A kind of body, as [`body_kind!`](crate::body_kind!) registers it at link time.
 #[derive(Clone, Copy)]
@@ -19,6 +19,9 @@ pub struct BodyKind {
     /// the run is one in simulated time. Other bodies are in real time, or in the time of the
     /// simulated world around them.
     pub has_own_time: fn(&BodySettings) -> bool,
+    /// What a body with these settings cannot do, or does in another way than the field's own
+    /// bodies, which have no limits. It is reported before a run, with the activities concerned.
+    pub limits: fn(&BodySettings, Surroundings) -> Vec<BodyLimit>,
     /// Opens a body of this kind.
     pub open: OpenBody,
     /// Offers a body of a simulated world at an address through the interface of this kind, for
@@ -30,6 +33,45 @@ pub struct BodyKind {
 
 /// Opens a body at a site.
 pub type OpenBody = fn(BodySite) -> Result<Box<dyn Robot>, Error>;
+
+/// What a body cannot do, or does in another way than software may expect.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct BodyLimit {
+    /// What is limited.
+    pub capability: Capability,
+    /// How, as a clause: `the robot cannot stand up by itself`.
+    pub effect: &'static str,
+}
+
+impl BodyLimit {
+    /// A limit of a skill.
+    pub const fn skill(skill: Skill, effect: &'static str) -> BodyLimit {
+        BodyLimit { capability: Capability::Skill(skill), effect }
+    }
+
+    /// A limit of what a topic of [`topics`](crate::topics) carries, given its path.
+    pub const fn topic(path: &'static str, effect: &'static str) -> BodyLimit {
+        BodyLimit { capability: Capability::Topic(path), effect }
+    }
+}
+
+/// What is around a body.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Surroundings {
+    /// A place of its own: reality, or a simulation that the kind of the body reaches by itself.
+    Own,
+    /// The simulated world of a match, which may stand in for what the interface of the body lacks.
+    Match,
+}
+
+/// A capability of a body.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Capability {
+    /// A skill.
+    Skill(Skill),
+    /// To deliver, or to obey, the messages of a topic with this path.
+    Topic(&'static str),
+}
 
 /// An option of a kind of body.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -127,6 +169,11 @@ impl BodySettings {
         })?;
         let options = self.options.clone();
         serve(BodySite { address: Some(address), options, simulated: Some(simulated) })
+    }
+
+    /// What the body cannot do there, see [`BodyKind::limits`]; nothing if there is no such kind.
+    pub fn limits(&self, surroundings: Surroundings) -> Vec<BodyLimit> {
+        BodyKind::named(&self.kind).map(|kind| (kind.limits)(self, surroundings)).unwrap_or_default()
     }
 
     /// Whether the body has a time of its own, see [`BodyKind::has_own_time`].

@@ -51,7 +51,10 @@ mod wrapped_body;
 narukom::include_messages!("monas.robot");
 
 pub use anatomy::{Anatomy, Camera, Joint, Limits};
-pub use body_kind::{BodyKind, BodyOption, BodySettings, BodySite, CameraOutput, OpenBody, OptionKind};
+pub use body_kind::{
+    BodyKind, BodyLimit, BodyOption, BodySettings, BodySite, CameraOutput, Capability, OpenBody, OptionKind,
+    Surroundings,
+};
 pub use joint_targets::JointTargets;
 pub use robot::{Error, ErrorKind, Percepts, Robot};
 pub use wrapped_body::{Disturbances, WrappedBody};

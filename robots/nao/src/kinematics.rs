@@ -227,7 +227,7 @@ pub fn heading(pose: &Isometry3<f64>) -> f64 {
 }
 
 /// The rotation of a hip by the shared joint.
-fn hip_rotation(side: Side, angle: f64) -> UnitQuaternion<f64> {
+pub(crate) fn hip_rotation(side: Side, angle: f64) -> UnitQuaternion<f64> {
     let [x, y, z] = HIP_YAW_PITCH;
     about(Vector3::new(x, y, side.sign() * z), angle)
 }
@@ -239,11 +239,11 @@ fn about(axis: Vector3<f64>, angle: f64) -> UnitQuaternion<f64> {
     UnitQuaternion::new_unchecked(nalgebra::Quaternion::from_parts(cos, axis.into_inner() * sin))
 }
 
-fn roll(angle: f64) -> UnitQuaternion<f64> {
+pub(crate) fn roll(angle: f64) -> UnitQuaternion<f64> {
     about(Vector3::x(), angle)
 }
 
-fn pitch(angle: f64) -> UnitQuaternion<f64> {
+pub(crate) fn pitch(angle: f64) -> UnitQuaternion<f64> {
     about(Vector3::y(), angle)
 }
 
@@ -251,11 +251,11 @@ pub(crate) fn yaw(angle: f64) -> UnitQuaternion<f64> {
     about(Vector3::z(), angle)
 }
 
-fn down(length: f64) -> Translation3<f64> {
+pub(crate) fn down(length: f64) -> Translation3<f64> {
     Translation3::new(0.0, 0.0, -length)
 }
 
-fn mirrored(left: Vector3<f64>, side: Side) -> Vector3<f64> {
+pub(crate) fn mirrored(left: Vector3<f64>, side: Side) -> Vector3<f64> {
     Vector3::new(left.x, side.sign() * left.y, left.z)
 }
 

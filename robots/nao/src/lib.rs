@@ -9,7 +9,7 @@
 //!
 //! The commands in the plane, which all bodies have, become joint targets here: a [`WalkEngine`]
 //! turns velocities into steps, skills are motions of the joints, and odometry follows from the
-//! foot on the ground by the [`kinematics`] of the legs.
+//! foot on the ground by the [`kinematics`] of the legs. [`mass`] has the centre of mass.
 //!
 //! # Limits
 //!
@@ -34,6 +34,7 @@ mod error;
 pub mod kinematics;
 mod leds;
 pub mod lola;
+pub mod mass;
 mod motions;
 mod nao;
 mod served_nao;
@@ -45,7 +46,8 @@ mod walk;
 
 use std::path::Path;
 
-use monas_robot::{BodyKind, BodySite, Robot};
+use monas_robot::topics::{ANNOUNCEMENT, HEARD, SAID, SIGHTINGS};
+use monas_robot::{BodyKind, BodyLimit, BodySettings, BodySite, Robot, Surroundings};
 
 pub use anatomy::{NaoJoint, anatomy};
 pub use error::{Error, ErrorKind};
@@ -60,10 +62,24 @@ monas_robot::body_kind!(BodyKind {
     summary: "a Nao V6 through LoLA; in simulated time through a LoLA server over the field's body",
     options: &[],
     has_own_time: |_| false,
+    limits,
     open,
     serve: Some(serve),
     probe,
 });
+
+/// What LoLA lacks, for which a match offers sockets of its own.
+fn limits(_: &BodySettings, surroundings: Surroundings) -> Vec<BodyLimit> {
+    match surroundings {
+        Surroundings::Match => Vec::new(),
+        Surroundings::Own => vec![
+            BodyLimit::topic(SIGHTINGS.path(), "the robot sees nothing: LoLA has no images"),
+            BodyLimit::topic(ANNOUNCEMENT.path(), "the robot hears no referee: LoLA has none"),
+            BodyLimit::topic(HEARD.path(), "the robot hears no team mates: LoLA has no radio"),
+            BodyLimit::topic(SAID.path(), "the robot cannot speak to team mates: LoLA has no radio"),
+        ],
+    }
+}
 
 /// Opens a Nao: in a simulated world over its body there, else at a socket.
 fn open(site: BodySite) -> Result<Box<dyn Robot>, monas_robot::Error> {

@@ -39,6 +39,7 @@ pub mod expression;
 pub mod frame;
 mod inertia;
 pub mod kinematics;
+mod limits;
 mod match_rules;
 pub mod monitor;
 mod options;
@@ -64,6 +65,7 @@ monas_robot::body_kind!(BodyKind {
     summary: "a Booster T1 on the RoboCup MuJoCo soccer server, which it starts without an `address`",
     options: options::OPTIONS,
     has_own_time,
+    limits: |settings, _| limits::limits(settings),
     open: |site| Ok(Box::new(open(&site)?) as Box<dyn Robot>),
     serve: None,
     probe,

@@ -1,6 +1,7 @@
 //! Agents and links from elements: Listing 4.17 of the thesis, read with diagnostics.
 
 mod charts;
+mod limits;
 mod monitors;
 mod publishers;
 
@@ -8,7 +9,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 
-use monas_robot::{BodyKind, BodyOption, BodySettings, CameraOutput, Disturbances, OptionKind};
+use monas_robot::{BodyKind, BodyOption, BodySettings, CameraOutput, Disturbances, OptionKind, Surroundings};
 use yase::{Diagnostic, Source};
 
 use super::element::{Attribute, Element};
@@ -74,17 +75,18 @@ fn assembled(
     registry: &Registry,
     mut diagnostics: Vec<Diagnostic>,
 ) -> (HostSetup, Vec<Diagnostic>) {
-    let setup = assemble(elements, path, registry, &mut diagnostics);
+    let setup = assemble(elements, path, registry, Surroundings::Own, &mut diagnostics);
     sort(&mut diagnostics);
     (setup, diagnostics)
 }
 
 /// The agents and links described by checked elements, with the errors that the grammar cannot
-/// detect; models are resolved relative to `path`.
+/// detect, and what the body cannot do in its surroundings; models are resolved relative to `path`.
 pub fn assemble(
     elements: &[Element],
     path: &Path,
     registry: &Registry,
+    surroundings: Surroundings,
     diagnostics: &mut Vec<Diagnostic>,
 ) -> HostSetup {
     let grammar = Grammar::agents();
@@ -98,6 +100,7 @@ pub fn assemble(
     reader.body(elements);
     reader.agents(elements);
     reader.unpublished(elements);
+    reader.limits(elements, surroundings);
     reader.setup
 }
 

@@ -150,6 +150,7 @@ pub struct Topics {
     reads: Vec<&'static str>,
     ends_on: Vec<&'static str>,
     publishes: Vec<&'static str>,
+    skills: Vec<&'static str>,
 }
 
 impl Topics {
@@ -185,6 +186,13 @@ impl Topics {
         self
     }
 
+    /// Adds a skill of the body that the activity requests through the topics that it publishes, by
+    /// the name that bodies give it: `KICK_LEFT`. What the body cannot do is reported before a run.
+    pub fn performs(mut self, skill: &'static str) -> Topics {
+        self.skills.push(skill);
+        self
+    }
+
     /// Whether topics are declared.
     pub fn is_declared(&self) -> bool {
         self.declared
@@ -203,6 +211,11 @@ impl Topics {
     /// The paths of the topics that are published.
     pub fn published_paths(&self) -> &[&'static str] {
         &self.publishes
+    }
+
+    /// The skills of the body that are requested.
+    pub fn skills(&self) -> &[&'static str] {
+        &self.skills
     }
 }
 

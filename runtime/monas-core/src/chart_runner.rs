@@ -19,6 +19,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
 use narukom::{HostId, Hub, Timestamp, TopicSlot};
+use yase::expression::EventId;
 use yase::{Activation, Chooser, Machine, MachineError, NodeId, Outcome, Status, TopicId};
 
 use crate::activity::{Activity, Progress};
@@ -224,6 +225,11 @@ impl ChartRunner {
     /// Raises an event from outside. Returns false if no expression names it.
     pub fn raise(&mut self, event: &str) -> bool {
         self.machine.dispatch_name(event)
+    }
+
+    /// Raises an event of the chart from outside.
+    pub(crate) fn raise_id(&mut self, event: EventId) {
+        self.machine.dispatch(event);
     }
 
     /// When the chart next acts by itself: a step, a call of a waiting activity, or the return of a

@@ -236,7 +236,7 @@ fn one(
     vocabulary: &TypeEnvironment,
     on_violation: ViolationResponse,
 ) -> Result<MonitoredProperty, Vec<Diagnostic>> {
-    let plan = bind(property, chart)?.plan;
+    let plan = bind(property, chart, vocabulary)?.plan;
     let guards = guards(&plan, chart, vocabulary)?;
     let is_foreign =
         |guard: &Guard| guard.sources().iter().any(|it| it.origin != yase::expression::Origin::Own);

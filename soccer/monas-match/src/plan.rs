@@ -9,7 +9,7 @@ use monas::{
     Agent, ChartListener, ConfigurationBundle, HostConfig, LinkConfig, Module, Registry, RunHash, Talws,
 };
 use monas_gamecontroller::{ControlReceiver, ControlSender, RuleBook};
-use monas_robot::{BodySettings, Robot};
+use monas_robot::{BodySettings, Robot, Surroundings};
 use monas_sim::{FieldGeometry, MatchRules, Physics, Radio, Setup, SharedField, SimulatedWorld, TeamSetup};
 use monas_tape::Tape;
 use yase::{Diagnostic, Source};
@@ -89,7 +89,13 @@ fn robots(
             let resolved = config::resolve(&robot.role, &Grammar::agents(), &settings.over(&robot.own));
             diagnostics.extend(resolved.diagnostics);
             diagnostics.extend(settings.unmatched(&robot.own, resolved.unmatched));
-            let setup = config::assemble(&resolved.elements, &robot.role, &registry, diagnostics);
+            let setup = config::assemble(
+                &resolved.elements,
+                &robot.role,
+                &registry,
+                Surroundings::Match,
+                diagnostics,
+            );
             let config::HostSetup { agents, links, modules, body, source } = setup;
             // Modules loaded for one robot are available to the next.
             registry = modules

@@ -25,6 +25,7 @@ monas_robot::body_kind!(BodyKind {
     summary: "the simulated world's own body: a disk on the embedded field",
     options: &[],
     has_own_time: |_| false,
+    limits: |_, _| Vec::new(),
     open: |site: BodySite| site.simulated.ok_or_else(nowhere),
     serve: None,
     probe: |_| Ok("it answers in matches".to_owned()),

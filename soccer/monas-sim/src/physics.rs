@@ -120,6 +120,9 @@ parameters! {
         /// Part of the speed that a bounce from a post or wall keeps (chosen).
         post_restitution: "1" = 0.6 in 0.0 to 1.0;
 
+        /// How often in a second a body senses and acts; its cycle is a whole number of steps of
+        /// the world, 0.01 s each (chosen; Nao: 100 through DCM, 83 through LoLA).
+        body_rate: "1/s" = 50.0 in 10.0 to 100.0;
         /// Pictures in each second (Nao: 30 at 320 by 240).
         camera_rate: "1/s" = 30.0 in 1.0 to 100.0;
         /// Height of the cameras of a standing robot (Nao: 0.5 m in a walking stance).

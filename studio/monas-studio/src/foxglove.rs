@@ -15,7 +15,10 @@ use serde_json::{Value, json};
 use tungstenite::protocol::{Role, WebSocketConfig};
 use tungstenite::{Message, WebSocket};
 
-use crate::foxglove_frame::{base64, frame};
+use crate::base64::base64;
+use crate::cameras::{self, Cameras};
+use crate::foxglove_cameras::CameraChannels;
+use crate::foxglove_frame::frame;
 use crate::foxglove_views::FoxgloveViews;
 use crate::live_state::LiveState;
 use crate::time::now;
@@ -96,7 +99,7 @@ fn exchange(
         let mut patience = PATIENCE;
         for _ in 0..BATCH {
             let Some(seen) = watch.wait(patience)? else { break };
-            for frame in channels.frames(&seen) {
+            for frame in channels.frames(&seen, cameras::of(state.scene.as_deref())) {
                 socket.send(Message::binary(frame))?;
             }
             patience = Duration::ZERO;
@@ -111,6 +114,7 @@ struct Channels {
     /// By host and topic.
     ids: BTreeMap<(String, String), u64>,
     views: FoxgloveViews,
+    cameras: CameraChannels,
     /// The largest number of a channel.
     last: u64,
     /// By the client's number: the channel.
@@ -138,11 +142,16 @@ impl Channels {
                 "schemaEncoding": "protobuf"}));
             self.ids.insert(key, id);
         }
-        let Channels { views, last, .. } = self;
-        news.extend(views.look(state, || {
+        let Channels { ids, views, cameras, last, .. } = self;
+        let mut next_id = || {
             *last += 1;
             *last
-        }));
+        };
+        news.extend(views.look(state, &mut next_id));
+        if let Some(known) = cameras::of(state.scene.as_deref()) {
+            let hosts = ids.keys().filter(|(_, topic)| topic == known.topic()).map(|(host, _)| host);
+            news.extend(cameras.look(known, hosts, next_id));
+        }
         Ok(news)
     }
 
@@ -170,7 +179,8 @@ impl Channels {
                     let (Some(id), Some(channel)) = (number(&one["id"]), one["channelId"].as_u64()) else {
                         return Err("a subscription has the numbers `id` and `channelId`".into());
                     };
-                    if !self.ids.values().any(|known| *known == channel) && !self.views.has(channel) {
+                    let is_topic = self.ids.values().any(|known| *known == channel);
+                    if !is_topic && !self.views.has(channel) && !self.cameras.has(channel) {
                         return Err(format!("there is no channel {channel}"));
                     }
                     if self.subscriptions.len() >= SUBSCRIPTIONS {
@@ -194,6 +204,8 @@ impl Channels {
     fn watch(&self, socket: &std::path::Path) -> Result<Option<WatchStream>, monas_link::Error> {
         let wanted = self.ids.iter().filter(|(_, id)| self.subscriptions.values().any(|known| known == *id));
         let mut topics: Vec<&str> = wanted.map(|((_, topic), _)| topic.as_str()).collect();
+        topics
+            .extend(self.cameras.topic(|channel| self.subscriptions.values().any(|known| *known == channel)));
         topics.sort_unstable();
         topics.dedup();
         if topics.is_empty() {
@@ -203,9 +215,21 @@ impl Channels {
     }
 
     /// The frames of a message.
-    fn frames(&self, seen: &Seen) -> Vec<Vec<u8>> {
-        let Some(channel) = self.ids.get(&(seen.from.clone(), seen.path.clone())) else { return Vec::new() };
-        let subscribed = self.subscriptions.iter().filter(|(_, known)| *known == channel);
-        subscribed.map(|(id, _)| frame(*id, seen.local, &seen.payload)).collect()
+    fn frames(&self, seen: &Seen, cameras: Option<&dyn Cameras>) -> Vec<Vec<u8>> {
+        let subscribers = |channel: u64| {
+            let of_channel = self.subscriptions.iter().filter(move |(_, known)| **known == channel);
+            of_channel.map(|(id, _)| *id)
+        };
+        let mut frames = Vec::new();
+        if let Some(channel) = self.ids.get(&(seen.from.clone(), seen.path.clone())) {
+            frames.extend(subscribers(*channel).map(|id| frame(id, seen.local, &seen.payload)));
+        }
+        if let Some(cameras) = cameras.filter(|cameras| cameras.topic() == seen.path) {
+            let wanted = |channel| subscribers(channel).next().is_some();
+            for (channel, image) in self.cameras.images(cameras, seen, wanted) {
+                frames.extend(subscribers(channel).map(|id| frame(id, seen.local, &image)));
+            }
+        }
+        frames
     }
 }

@@ -1,4 +1,4 @@
-//! Frames of Foxglove's protocol, and the encoding of its schemas.
+//! Frames of Foxglove's protocol.
 
 /// The first byte of a frame with a message.
 const MESSAGE_DATA: u8 = 1;
@@ -12,34 +12,4 @@ pub(crate) fn frame(subscription: u32, time: u64, payload: &[u8]) -> Vec<u8> {
     frame.extend(time.to_le_bytes());
     frame.extend(payload);
     frame
-}
-
-/// The protocol's encoding of bytes in JSON.
-pub(crate) fn base64(bytes: &[u8]) -> String {
-    const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);
-    for chunk in bytes.chunks(3) {
-        let byte = |place: usize| u32::from(chunk.get(place).copied().unwrap_or_default());
-        let bits = byte(0) << 16 | byte(1) << 8 | byte(2);
-        for place in 0..4 {
-            let digit = DIGITS[(bits >> (18 - 6 * place) & 63) as usize];
-            text.push(if place <= chunk.len() { char::from(digit) } else { '=' });
-        }
-    }
-    text
-}
-
-#[cfg(test)]
-mod tests {
-    use super::base64;
-
-    #[test]
-    fn bytes_are_encoded_with_padding() {
-        // RFC 4648, section 10
-        for (bytes, text) in
-            [("", ""), ("f", "Zg=="), ("fo", "Zm8="), ("foo", "Zm9v"), ("foobar", "Zm9vYmFy")]
-        {
-            assert_eq!(base64(bytes.as_bytes()), text);
-        }
-    }
 }

@@ -6,8 +6,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use prost::Message as _;
 use serde_json::{Value, json};
 
+use crate::base64::base64;
 use crate::chart_view::ChartKey;
-use crate::foxglove_frame::{base64, frame};
+use crate::foxglove_frame::frame;
 use crate::live_state::LiveState;
 use crate::scene_update::SceneHistory;
 use crate::scene_update::messages::SceneUpdate;
@@ -143,7 +144,7 @@ impl ChartChannel {
 }
 
 /// The description of a channel.
-fn channel(id: u64, path: &str, descriptor: &narukom::MessageDescriptor) -> Value {
+pub(crate) fn channel(id: u64, path: &str, descriptor: &narukom::MessageDescriptor) -> Value {
     json!({"id": id, "topic": path, "encoding": "protobuf", "schemaName": descriptor.full_name,
         "schema": base64(descriptor.file_descriptor_set), "schemaEncoding": "protobuf"})
 }

@@ -5,6 +5,7 @@ use std::panic::{self, AssertUnwindSafe};
 use monas::linked::FUNCTIONS;
 use serde::Serialize;
 use serde_json::Value;
+use yase::diagnostic::Suggestions;
 use yase::expression::{
     CallError, EvalContext, EventInterner, Expression, ExpressionKind, MessageSource, NameScope,
     ScriptInterner, TimerId, TimerState, TransitionExpression,
@@ -142,6 +143,7 @@ fn evaluate(condition: Expression) -> Option<bool> {
         events: &mut events,
         scripts: &mut scripts,
         states: &|_| None,
+        suggestions: &Suggestions::default(),
     };
     let expression = TransitionExpression { guard: Some(condition), ..TransitionExpression::default() };
     let guard = expression.compile(&mut names).ok()?.guard?;

@@ -42,6 +42,8 @@
 mod access;
 mod aseme_language;
 mod asset;
+mod base64;
+mod cameras;
 mod chart_history;
 #[cfg_attr(not(unix), allow(dead_code, reason = "only runs of Unix are followed"))]
 mod chart_view;
@@ -50,6 +52,8 @@ mod control_request;
 mod error;
 #[cfg(unix)]
 mod foxglove;
+#[cfg(unix)]
+mod foxglove_cameras;
 #[cfg(unix)]
 mod foxglove_frame;
 #[cfg(unix)]
@@ -96,6 +100,7 @@ mod viewer_request;
 mod why;
 
 pub use aseme_language::AsemeLanguage;
+pub use cameras::Cameras;
 pub use error::{Error, ErrorKind};
 pub use guard_atom::GuardAtom;
 pub use message_chain::{ChainLink, MessageChain};

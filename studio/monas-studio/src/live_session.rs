@@ -7,6 +7,7 @@ use monas::records::Chart;
 use monas_link::control::{ControlClient, WatchStream};
 use serde_json::{Value, json};
 
+use crate::cameras::{self, ChosenCamera};
 use crate::chart_view::seconds;
 use crate::control_request::ControlRequest;
 use crate::live_state::LiveState;
@@ -32,6 +33,8 @@ pub(crate) struct LiveSession {
     /// The pace that the viewer knows.
     pace: Option<f64>,
     watched: Option<WatchedTopic>,
+    /// The robot whose images are seen, and their topic.
+    camera: Option<(ChosenCamera, WatchedTopic)>,
     /// The moment that is looked at, if it is not the present one.
     past: Option<PastMoment>,
     /// Whether the viewer has to forget what it has, since the moment is not a later one.
@@ -82,6 +85,10 @@ impl Session for LiveSession {
                 self.watched = None;
                 None
             }
+            ViewerRequest::Camera(host) => {
+                self.camera = host.and_then(|host| self.watch_camera(host));
+                None
+            }
             ViewerRequest::Pace(factor) => {
                 if let Some(past) = &mut self.past {
                     past.factor = factor.min(FASTEST);
@@ -114,7 +121,7 @@ impl Session for LiveSession {
 
     fn frame(&mut self, elapsed: Duration) -> Option<Value> {
         self.play(elapsed);
-        let sample = self.sample();
+        let (sample, images) = (self.sample(), self.images(elapsed));
         let pace = self.state.pace.as_ref().map(Pace::factor);
         let is_elsewhere = std::mem::take(&mut self.is_elsewhere);
         if is_elsewhere {
@@ -133,7 +140,8 @@ impl Session for LiveSession {
         };
         let is_new = frame.as_ref().is_some_and(|frame| frame.get("run").is_some());
         let facts = self.facts(is_new);
-        if frame.is_none() && sample.is_none() && facts.is_none() && pace == self.pace {
+        let has_news = frame.is_some() || sample.is_some() || images.is_some() || facts.is_some();
+        if !has_news && pace == self.pace {
             return None;
         }
         let mut frame = frame.unwrap_or_else(|| json!({"type": "frame", "now": seconds(now)}));
@@ -142,6 +150,9 @@ impl Session for LiveSession {
         }
         if let Some(sample) = sample {
             frame["sample"] = sample;
+        }
+        if let Some(images) = images {
+            frame["camera"] = images;
         }
         if let Some(facts) = facts {
             frame["tape"] = facts;
@@ -166,6 +177,7 @@ impl LiveSession {
             cursor: ViewCursor::default(),
             pace: None,
             watched: None,
+            camera: None,
             past: None,
             is_elsewhere: false,
             ring: None,
@@ -268,6 +280,35 @@ impl LiveSession {
         let stream = client.watch(host, topic, true)?;
         let epoch = self.state.view().epoch;
         Ok(WatchedTopic { stream, epoch, host: host.into(), topic: topic.into(), count: 0 })
+    }
+
+    /// Watches the images of a host; none if they cannot be watched.
+    fn watch_camera(&self, host: String) -> Option<(ChosenCamera, WatchedTopic)> {
+        let topic = cameras::of(self.state.scene.as_deref())?.topic();
+        let watched = self.watch(&host, topic).ok()?;
+        Some((ChosenCamera::new(host), watched))
+    }
+
+    /// The newest images, if they are due and there are new ones. Images of a past moment are not
+    /// kept.
+    fn images(&mut self, elapsed: Duration) -> Option<Value> {
+        let (camera, watched) = self.camera.as_mut()?;
+        let is_due = camera.is_due(elapsed);
+        let mut newest = None;
+        for _ in 0..SKIPPED {
+            match watched.stream.wait(Duration::ZERO) {
+                Ok(Some(seen)) => newest = Some(seen),
+                Ok(None) => break,
+                Err(_) => {
+                    // The run has ended or begun anew, which the page shows.
+                    self.camera = None;
+                    return None;
+                }
+            }
+        }
+        let seen = newest.filter(|_| is_due && self.past.is_none())?;
+        let scene = self.state.scene.clone();
+        Some(camera.object(cameras::of(scene.as_deref())?, seen.local, &seen.payload))
     }
 
     /// The newest message of the watched topic, if there is a new one.

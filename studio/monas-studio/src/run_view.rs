@@ -7,6 +7,7 @@ use monas::records::{self, AgentEntry, ChartState, Model, foxglove::Log};
 use prost::Message;
 use serde_json::{Value, json};
 
+use crate::cameras::{self, Cameras};
 use crate::chart_view::{ChartKey, ChartView, seconds};
 use crate::message_decoder::MessageDecoder;
 use crate::scene::{Scene, ScenePicture};
@@ -190,7 +191,7 @@ impl RunView {
             };
             frame["run"] = json!({"epoch": self.epoch, "link": link, "reason": reason, "name": self.name,
                 "process": self.process, "simulated": self.is_simulated, "hosts": self.hosts,
-                "scene": scene.is_some()});
+                "scene": scene.is_some(), "camera_topic": cameras::of(scene).map(Cameras::topic)});
         }
         if is_new || cursor.alarms != self.alarms {
             has_news = true;

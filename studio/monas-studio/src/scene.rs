@@ -5,6 +5,8 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 use serde_json::Value;
 
+use crate::cameras::Cameras;
+
 /// A view from above, which a program gives: the studio knows no sport.
 ///
 /// The plane has x to the right and y up, in metres; headings are in radians.
@@ -20,6 +22,11 @@ pub trait Scene: Send + Sync {
     /// The event that a message on such a topic is, if it is one, from its protobuf encoding.
     fn event(&self, host: &str, topic: &str, bytes: &[u8]) -> Option<SceneEvent> {
         let _ = (host, topic, bytes);
+        None
+    }
+
+    /// What the cameras of robots see, if the program has such robots.
+    fn cameras(&self) -> Option<&dyn Cameras> {
         None
     }
 

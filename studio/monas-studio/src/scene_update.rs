@@ -74,7 +74,7 @@ impl SceneHistory {
     }
 }
 
-fn timestamp(time: u64) -> Timestamp {
+pub(crate) fn timestamp(time: u64) -> Timestamp {
     Timestamp { seconds: (time / 1_000_000_000) as i64, nanos: (time % 1_000_000_000) as i32 }
 }
 

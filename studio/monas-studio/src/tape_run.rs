@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use monas_tape::{Recording, RecordingItem};
+use narukom::Timestamp;
 use serde_json::{Value, json};
 use yase::Statechart;
 
@@ -126,10 +127,7 @@ impl TapeRun {
             });
             index.note_event(&mut last_events, channel, time, message.bytes);
         }
-        index.events.sort_by(|a, b| {
-            let time = |event: &Value| event["t"].as_f64().unwrap_or_default();
-            time(a).total_cmp(&time(b))
-        });
+        sort_events(&mut index.events);
         // By time of publication; equal times stay in the order of the tape.
         index.entries.sort_by_key(|entry| entry.time);
         let first = index.first_moment(name);
@@ -139,6 +137,17 @@ impl TapeRun {
             index.moments = moments;
         }
         Ok(tape)
+    }
+
+    /// Marks further events on the timeline. To be called before the tape is shared; afterwards it
+    /// has no effect.
+    pub fn mark(&mut self, events: impl IntoIterator<Item = (Timestamp, SceneEvent)>) {
+        let Some(index) = Arc::get_mut(&mut self.0) else { return };
+        let marked = events.into_iter().map(
+            |(time, event)| json!({"t": seconds(time.as_nanos()), "kind": event.kind, "text": event.text}),
+        );
+        index.events.extend(marked);
+        sort_events(&mut index.events);
     }
 
     fn moments(&self, first: TapeMoment) -> Vec<TapeMoment> {
@@ -220,6 +229,12 @@ impl TapeRun {
             true => (0..count.saturating_sub(1)).rev().find(is_step).map(|index| index + 1),
         }
     }
+}
+
+/// Sorts events by time.
+fn sort_events(events: &mut [Value]) {
+    let time = |event: &Value| event["t"].as_f64().unwrap_or_default();
+    events.sort_by(|a, b| time(a).total_cmp(&time(b)));
 }
 
 fn key_of(channel: &TapeChannel, bytes: &[u8]) -> Option<String> {

@@ -5,6 +5,7 @@ use std::time::Duration;
 use serde_json::{Value, json};
 use yase::{NodeId, TransitionId};
 
+use crate::cameras::{self, ChosenCamera};
 use crate::chart_view::seconds;
 use crate::run_view::ViewCursor;
 use crate::source::Session;
@@ -34,6 +35,9 @@ pub(crate) struct TapeSession {
     watched: Option<(String, String)>,
     /// The message of the watched topic that was sent last.
     sent: Option<usize>,
+    camera: Option<ChosenCamera>,
+    /// The message with the images that were sent last.
+    sent_images: Option<usize>,
     /// What is marked on the timeline.
     events: Vec<Value>,
     other: Option<OtherMoment>,
@@ -86,6 +90,8 @@ impl TapeSession {
             tables: None,
             watched: None,
             sent: None,
+            camera: None,
+            sent_images: None,
             events,
             other: None,
         }
@@ -154,6 +160,22 @@ impl TapeSession {
     }
 }
 
+impl TapeSession {
+    /// The images at the moment, if they are others than before.
+    fn images(&mut self, elapsed: Duration) -> Option<Value> {
+        let cameras = cameras::of(self.tape.scene())?;
+        let camera = self.camera.as_mut()?;
+        if !camera.is_due(elapsed) {
+            return None;
+        }
+        let index = self.moment.newest(&self.tape, &camera.host, cameras.topic());
+        let index = index.filter(|index| Some(*index) != self.sent_images)?;
+        let (entry, _) = self.tape.entry(index)?;
+        self.sent_images = Some(index);
+        Some(camera.object(cameras, entry.time, self.tape.bytes(entry)))
+    }
+}
+
 impl Session for TapeSession {
     fn handle(&mut self, request: ViewerRequest) -> Option<Value> {
         match request {
@@ -163,6 +185,10 @@ impl Session for TapeSession {
                 self.sent = None;
             }
             ViewerRequest::Unwatch => self.watched = None,
+            ViewerRequest::Camera(host) => {
+                self.camera = host.map(ChosenCamera::new);
+                self.sent_images = None;
+            }
             ViewerRequest::Live | ViewerRequest::Model(..) => {}
             ViewerRequest::Control(id, _) => {
                 let reason = "a tape cannot be changed";
@@ -213,19 +239,23 @@ impl Session for TapeSession {
         if self.is_elsewhere {
             self.cursor = ViewCursor::default();
         }
-        let sample = self.sample();
+        let (sample, images) = (self.sample(), self.images(elapsed));
         let is_elsewhere = self.is_elsewhere;
         let beside = self.other.as_mut().and_then(|other| {
             let has_jumped = other.go_to(now) || is_elsewhere;
             other.frame(has_jumped)
         });
         let frame = self.moment.view.frame(&mut self.cursor, self.tape.scene());
-        if frame.is_none() && sample.is_none() && beside.is_none() && !self.is_new {
+        let has_news = frame.is_some() || sample.is_some() || images.is_some() || beside.is_some();
+        if !has_news && !self.is_new {
             return None;
         }
         let mut frame = frame.unwrap_or_else(|| json!({"type": "frame", "now": seconds(now)}));
         if let Some(sample) = sample {
             frame["sample"] = sample;
+        }
+        if let Some(images) = images {
+            frame["camera"] = images;
         }
         if let Some(beside) = beside {
             frame["beside"] = beside;

@@ -15,6 +15,8 @@ pub(crate) enum ViewerRequest {
     Watch { host: String, topic: String },
     /// No messages from now on.
     Unwatch,
+    /// Images of the cameras of a host from now on; of none without one.
+    Camera(Option<String>),
     /// Another speed of simulated time, or of what is played.
     Pace(f64),
     /// The present moment of a run.
@@ -48,6 +50,7 @@ impl ViewerRequest {
             }
             "watch" => Some(ViewerRequest::Watch { host: word("host")?, topic: word("topic")? }),
             "live" => Some(ViewerRequest::Live),
+            "camera" => Some(ViewerRequest::Camera(word("host"))),
             "unwatch" => Some(ViewerRequest::Unwatch),
             // JSON has no infinity
             "pace" if value["factor"].is_null() => Some(ViewerRequest::Pace(f64::INFINITY)),

@@ -6,7 +6,7 @@ use super::TidyFinding;
 use super::workspace::{Crate, Dependency, Workspace};
 
 /// Every crate of the product and its layer.
-const LAYERS: [(&str, u8); 35] = [
+const LAYERS: [(&str, u8); 36] = [
     ("monas-diagnostics", 0),
     ("monas-files", 0),
     ("narukom", 0),
@@ -41,6 +41,7 @@ const LAYERS: [(&str, u8); 35] = [
     ("monas-studio", 15),
     ("monas-project", 15),
     ("monas-deploy", 16),
+    ("monas-scene", 16),
     ("monas-cli", 17),
 ];
 

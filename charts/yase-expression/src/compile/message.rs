@@ -78,7 +78,7 @@ impl<'a> NameContext<'a> {
                 let text = format!("the message `{message}` has no field `{}`", name.text);
                 let known = entries.iter().map(|entry| entry.name.as_str());
                 let diagnostic = Diagnostic::error("E0134", name.place.0, text);
-                return Err(vec![unknown(
+                return Err(vec![self.unknown(
                     diagnostic,
                     &name.text,
                     known,
@@ -137,7 +137,12 @@ impl<'a> NameContext<'a> {
         let messages = self.vocabulary.messages.iter().map(|entry| entry.name.as_str());
         let known = messages.chain(self.vocabulary.topics.iter().map(last_segment));
         let diagnostic = Diagnostic::error("E0132", name.place.0, text);
-        unknown(diagnostic, &name.text, known, "a variable is `Message.field` or `topic.Kind.Message.field`")
+        self.unknown(
+            diagnostic,
+            &name.text,
+            known,
+            "a variable is `Message.field` or `topic.Kind.Message.field`",
+        )
     }
 
     /// The topic with this name, kind and message type.
@@ -147,7 +152,12 @@ impl<'a> NameContext<'a> {
             let text = format!("there is no topic `{}`", name.text);
             let known = self.vocabulary.topics.iter().map(last_segment);
             let diagnostic = Diagnostic::error("E0132", name.place.0, text);
-            return Err(vec![unknown(diagnostic, &name.text, known, "a topic is named by its last segment")]);
+            return Err(vec![self.unknown(
+                diagnostic,
+                &name.text,
+                known,
+                "a topic is named by its last segment",
+            )]);
         }
         let wanted =
             |topic: &&&TopicEntry| Some(topic.kind) == kind_of(kind) && topic.message == message.text;
@@ -160,6 +170,31 @@ impl<'a> NameContext<'a> {
             return Err(vec![diagnostic.with_hint(format!("write {}", forms.join(" or ")))]);
         }
         only(&fitting, name.place.0, || format!("the name `{}`", name.text))
+    }
+
+    /// Diagnostic for an unknown name. It suggests the nearest known name, or lists all names if
+    /// they are few, or else describes the expected form.
+    pub(crate) fn unknown<'n>(
+        &self,
+        diagnostic: Diagnostic,
+        wrong: &str,
+        mut known: impl Iterator<Item = &'n str> + Clone,
+        form: &str,
+    ) -> Diagnostic {
+        const FEW: usize = 12;
+        let diagnostic = diagnostic.with_suggestion(self.suggestions, wrong, known.clone());
+        if diagnostic.hint.is_some() {
+            return diagnostic;
+        }
+        let mut names = BTreeSet::new();
+        let are_few = known.all(|name| {
+            names.insert(name);
+            names.len() <= FEW
+        });
+        if !are_few || names.is_empty() {
+            return diagnostic.with_hint(form);
+        }
+        diagnostic.with_hint(format!("known are {}", Vec::from_iter(names).join(", ")))
     }
 }
 
@@ -183,27 +218,6 @@ fn only<'a>(
             Err(vec![diagnostic.with_hint(format!("write {}", forms.join(" or ")))])
         }
     }
-}
-
-/// Diagnostic for an unknown name. It suggests the nearest known name, or lists all names if they
-/// are few, or else describes the expected form.
-pub(crate) fn unknown<'n>(
-    diagnostic: Diagnostic,
-    wrong: &str,
-    known: impl Iterator<Item = &'n str>,
-    form: &str,
-) -> Diagnostic {
-    const FEW: usize = 12;
-    let known: BTreeSet<_> = known.collect();
-    let diagnostic = diagnostic.with_nearest(wrong, known.iter().copied());
-    if diagnostic.hint.is_some() {
-        return diagnostic;
-    }
-    if known.is_empty() || known.len() > FEW {
-        return diagnostic.with_hint(form);
-    }
-    let known: Vec<_> = known.into_iter().collect();
-    diagnostic.with_hint(format!("known are {}", known.join(", ")))
 }
 
 pub(crate) fn kind_of(name: &Name) -> Option<TopicKind> {

@@ -3,9 +3,9 @@
 use std::cell::RefCell;
 
 use super::CompileResult;
-use super::message::{describe, unknown};
+use super::message::describe;
 use crate::constant::{Constant, ConstantValue};
-use crate::diagnostic::{Diagnostic, Span};
+use crate::diagnostic::{Diagnostic, Span, Suggestions};
 use crate::eval_context::TimerId;
 use crate::ir::{BooleanTerm, Literal, ValueTerm};
 use crate::names::{NameScope, ScriptId, ScriptInterner};
@@ -19,6 +19,7 @@ pub(crate) struct NameContext<'a> {
     constants: &'a [Constant],
     timers: &'a [String],
     states: &'a dyn Fn(&str) -> Option<NodeId>,
+    pub(crate) suggestions: &'a Suggestions,
     /// Borrowed from the names while one expression is compiled.
     scripts: RefCell<ScriptInterner>,
 }
@@ -42,6 +43,7 @@ impl<'a> NameContext<'a> {
             constants: names.constants,
             timers: names.timers,
             states: names.states,
+            suggestions: names.suggestions,
             scripts: RefCell::new(std::mem::take(names.scripts)),
         }
     }
@@ -65,8 +67,7 @@ impl<'a> NameContext<'a> {
         if self.timers.is_empty() {
             return None;
         }
-        let text = path.text();
-        let index = self.timers.iter().position(|timer| *timer == text)?;
+        let index = self.timers.binary_search(&path.text()).ok()?;
         Some(TimerId(index as u32))
     }
 
@@ -83,7 +84,7 @@ impl<'a> NameContext<'a> {
             let message = format!("there is no function `{}`", name.text);
             let known = self.vocabulary.functions.iter().map(|function| function.name.as_str());
             let diagnostic = Diagnostic::error("E0139", name.place.0, message);
-            vec![unknown(
+            vec![self.unknown(
                 diagnostic,
                 &name.text,
                 known,
@@ -179,7 +180,7 @@ impl<'a> NameContext<'a> {
             let message = format!("the enumeration `{}` has no value `{name}`", enumeration.name);
             let known = enumeration.values.iter().map(|(value, _)| value.as_str());
             let form = "see the definition of the enumeration";
-            return unknown(Diagnostic::error("E0130", span, message), name, known, form);
+            return self.unknown(Diagnostic::error("E0130", span, message), name, known, form);
         }
         let message = format!("there is no `{name}` here");
         if let Some(hint) = self.hint_for_unknown(name, expected) {
@@ -189,7 +190,8 @@ impl<'a> NameContext<'a> {
         let constants = self.constants.iter().map(|constant| constant.name.as_str());
         let functions = self.vocabulary.functions.iter().map(|function| function.name.as_str());
         let diagnostic = Diagnostic::error("E0130", span, message);
-        let diagnostic = diagnostic.with_nearest(name, timers.chain(constants).chain(functions));
+        let known = timers.chain(constants).chain(functions);
+        let diagnostic = diagnostic.with_suggestion(self.suggestions, name, known);
         if diagnostic.hint.is_some() {
             return diagnostic;
         }

@@ -6,6 +6,7 @@ use super::test_context::{
     BALL, BEHAVIOR_FALL, COLOUR, DISTANCE, GAME, LEFT_ARM, MOTION, POSITION, TestContext, X, compile_with,
     compiled, constants, guard, state_of, timers, vocabulary,
 };
+use crate::diagnostic::Suggestions;
 use crate::vocabulary::{FieldId, Value};
 use crate::{
     CompiledTransition, CompiledTrigger, Effect, EventId, EventInterner, NameScope, Origin, ScriptInterner,
@@ -220,8 +221,15 @@ fn actions_compile_without_a_transition() {
     let (vocabulary, states) = (&vocabulary, &state_of);
     let mut scripts = ScriptInterner::new();
     let (constants, timers) = (&constants, &timers);
-    let mut names =
-        NameScope { vocabulary, constants, timers, events: &mut events, scripts: &mut scripts, states };
+    let mut names = NameScope {
+        vocabulary,
+        constants,
+        timers,
+        events: &mut events,
+        scripts: &mut scripts,
+        states,
+        suggestions: &Suggestions::default(),
+    };
     let (actions, _) = parse_actions("raise(entered)");
     assert_eq!(compile_actions(&actions, &mut names), Ok([Effect::Raise { event: EventId(0) }].into()));
     let (actions, _) = parse_actions("Ball.x = 1; Ball.y = 2");

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::constant::{Constant, ConstantValue};
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Diagnostic, Suggestions};
 use crate::node_id::NodeId;
 use crate::vocabulary::{
     Enumeration, FieldEntry, FieldId, FunctionEntry, FunctionId, MessageEntry, TopicEntry, TopicId,
@@ -148,6 +148,7 @@ pub(crate) fn compile_with(
         events,
         scripts: &mut ScriptInterner::new(),
         states: &state_of,
+        suggestions: &Suggestions::default(),
     })
 }
 

@@ -16,7 +16,7 @@ use crate::compile::{
     NodeSets, Scope, ScopedGuard, ScopedTimer, SegmentNode, entries, events, scripts, selection_order,
     selection_table,
 };
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Diagnostic, Suggestions};
 use crate::expression::{
     CompiledTrigger, Effect, EventId, EventInterner, MessageSource, Origin, ScriptInterner, compile_actions,
     started_timers,
@@ -24,7 +24,7 @@ use crate::expression::{
 use crate::ids::{ActionLocation, ScopeId};
 use crate::native::NativeProgram;
 use crate::semantics::{FailureEvents, Semantics};
-use crate::statechart::{NodeId, NodeKind, Statechart, TransitionId};
+use crate::statechart::{BriefNames, NodeId, NodeKind, Statechart, TransitionId};
 use crate::vocabulary::{TopicId, TypeEnvironment};
 
 /// Checks and compiles a statechart.
@@ -68,6 +68,8 @@ pub(crate) fn build(
         rows: Vec::new(),
         compounds: Vec::with_capacity(count),
         found: Vec::new(),
+        suggestions: Suggestions::default(),
+        names: BriefNames::new(chart),
     };
     builder.finish(&ways, regions)
 }
@@ -164,6 +166,8 @@ pub(crate) struct ChartCompiler<'a> {
     pub(crate) rows: Vec<CandidatePath>,
     pub(crate) compounds: Vec<CompoundTransition>,
     pub(crate) found: Vec<Diagnostic>,
+    pub(crate) suggestions: Suggestions,
+    pub(crate) names: BriefNames<'a>,
 }
 
 impl ChartCompiler<'_> {
@@ -338,9 +342,10 @@ impl ChartCompiler<'_> {
         let id = self.layout.node(place);
         let (chart, region) = (self.chart, self.region_of[id.0 as usize]);
         let node = chart.node(id);
-        let what = |when: &str| format!("{when} of `{}`", chart.path(id));
-        let mut entry = self.actions(region, |names| compile_actions(&node.entry, names), || what("entry"));
-        let mut exit = self.actions(region, |names| compile_actions(&node.exit, names), || what("exit"));
+        let entry = |names: &BriefNames<'_>| format!("entry of `{}`", names.name(id));
+        let exit = |names: &BriefNames<'_>| format!("exit of `{}`", names.name(id));
+        let mut entry = self.actions(region, |names| compile_actions(&node.entry, names), entry);
+        let mut exit = self.actions(region, |names| compile_actions(&node.exit, names), exit);
         self.bind_functions(&mut entry, ActionLocation::Entry(id), region);
         self.bind_functions(&mut exit, ActionLocation::Exit(id), region);
         CompiledNode {

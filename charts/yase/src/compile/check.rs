@@ -7,7 +7,7 @@ use crate::compile::NodeOrder;
 use crate::compile::node_roles::{NodeRoles, is_state};
 use crate::diagnostic::{Diagnostic, Span};
 use crate::semantics::{Semantics, StructureRules};
-use crate::statechart::{Element, NodeId, NodeKind, Statechart};
+use crate::statechart::{BriefNames, Element, NodeId, NodeKind, Statechart};
 
 impl Statechart {
     /// Checks the structure. Each diagnostic names states by their path; errors prevent execution.
@@ -50,6 +50,7 @@ impl Statechart {
         let layout = NodeOrder::new(self);
         let mut check = ChartValidator {
             chart: self,
+            names: BriefNames::new(self),
             layout: &layout,
             is_strict: semantics.structure == StructureRules::Strict,
             found: Vec::new(),
@@ -69,6 +70,7 @@ impl Statechart {
 
 struct ChartValidator<'a> {
     chart: &'a Statechart,
+    names: BriefNames<'a>,
     layout: &'a NodeOrder,
     /// Whether the forms that only UML allows are errors.
     is_strict: bool,
@@ -114,7 +116,7 @@ impl ChartValidator<'_> {
     }
 
     fn path(&self, node: NodeId) -> String {
-        self.chart.path(node)
+        self.names.name(node)
     }
 
     fn kind(&self, node: NodeId) -> NodeKind {

@@ -14,7 +14,7 @@ use crate::compile::{EnablingCondition, NodeOrder};
 use crate::diagnostic::{Diagnostic, Span};
 use crate::ids::ScopeId;
 use crate::semantics::{CompletionTrigger, JoinMode, SegmentOrder, Semantics};
-use crate::statechart::{NodeId, NodeKind, Statechart, TransitionId};
+use crate::statechart::{BriefNames, NodeId, NodeKind, Statechart, TransitionId};
 
 /// The maximum number of compound transitions of a chart: connectors that fan out and in again
 /// multiply.
@@ -140,6 +140,7 @@ pub(crate) fn find(
         hulls: BTreeMap::new(),
         terminates: BTreeMap::new(),
         count: 0,
+        names: BriefNames::new(chart),
         errors: Vec::new(),
     };
     search.number_joins();
@@ -176,6 +177,7 @@ fn outgoing(chart: &Statechart, roles: &NodeRoles, order: SegmentOrder) -> Vec<V
 
 struct CompoundPathSearch<'a> {
     chart: &'a Statechart,
+    names: BriefNames<'a>,
     layout: &'a NodeOrder,
     roles: &'a NodeRoles,
     regions: &'a [ScopeId],
@@ -349,7 +351,7 @@ impl CompoundPathSearch<'_> {
             PathStart::States(source, ..) | PathStart::Late(source, _) => source,
         };
         if self.count > MAX_WAYS {
-            let path = self.chart.path(source);
+            let path = self.names.name(source);
             let message = format!("more than {MAX_WAYS} compound transitions, up to those out of `{path}`");
             self.errors.push(Diagnostic::error("M06", Span::default(), message));
         } else if trail.ends.len() > 1 && trail.ends.iter().any(|&end| self.leads_to_terminate(end)) {
@@ -447,22 +449,22 @@ impl CompoundPathSearch<'_> {
         let stops = trail.ends.iter().copied().find(|&end| self.leads_to_terminate(end));
         let message = format!(
             "a FORK leads to `{}`, which stops the chart",
-            self.chart.path(stops.unwrap_or(Statechart::ROOT))
+            self.names.name(stops.unwrap_or(Statechart::ROOT))
         );
         let hint = "the branches of a FORK lead to states; TERMINATE may stand behind a CHOICE that leads to others too";
         self.errors.push(Diagnostic::error("M04", Span::default(), message).with_hint(hint));
     }
 
     fn refuse_fork(&mut self, trail: &PartialPath) {
-        let ends: Vec<String> = trail.ends.iter().map(|&end| self.chart.path(end)).collect();
+        let ends: Vec<String> = trail.ends.iter().map(|&end| self.names.name(end)).collect();
         let message = format!("a FORK leads to `{}`, which cannot be active together", ends.join("` and `"));
         let hint = "the branches of a FORK lead to different regions of one AND";
         self.errors.push(Diagnostic::error("M04", Span::default(), message).with_hint(hint));
     }
 
     fn refuse(&mut self, source: NodeId, trail: &PartialPath) {
-        let ends: Vec<String> = trail.ends.iter().map(|&end| self.chart.path(end)).collect();
-        let (source, target) = (self.chart.path(source), ends.join("` and `"));
+        let ends: Vec<String> = trail.ends.iter().map(|&end| self.names.name(end)).collect();
+        let (source, target) = (self.names.name(source), ends.join("` and `"));
         let message = format!("no transition can lead from `{source}` to `{target}`");
         let hint = "what is internal stays inside its source";
         self.errors.push(Diagnostic::error("M03", Span::default(), message).with_hint(hint));

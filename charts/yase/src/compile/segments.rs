@@ -11,7 +11,7 @@ use crate::diagnostic::Diagnostic;
 use crate::expression::{CompiledTransition, Effect, NameScope};
 use crate::ids::{ActionLocation, CompoundTransitionId, ScopeId};
 use crate::semantics::{Firing, InitialState};
-use crate::statechart::{NodeId, NodeKind, TransitionId};
+use crate::statechart::{BriefNames, NodeId, NodeKind, TransitionId};
 
 /// A segment compiled for one scope.
 #[derive(Clone, Debug, Default)]
@@ -114,8 +114,9 @@ impl ChartCompiler<'_> {
         }
         let chart = self.chart;
         let transition = chart.transition(id);
-        let what =
-            || format!("from `{}` to `{}`", chart.path(transition.source), chart.path(transition.target));
+        let what = |names: &BriefNames<'_>| {
+            format!("from `{}` to `{}`", names.name(transition.source), names.name(transition.target))
+        };
         let mut compiled: CompiledTransition =
             self.actions(region, |names| transition.expression.compile(names), what);
         self.bind_functions(&mut compiled.effects, ActionLocation::Transition(id), region);
@@ -139,7 +140,7 @@ impl ChartCompiler<'_> {
         &mut self,
         region: ScopeId,
         compile: impl FnOnce(&mut NameScope<'_>) -> Result<T, Vec<Diagnostic>>,
-        what: impl FnOnce() -> String,
+        what: impl FnOnce(&BriefNames<'_>) -> String,
     ) -> T {
         let mut names = NameScope {
             vocabulary: self.vocabulary,
@@ -148,9 +149,10 @@ impl ChartCompiler<'_> {
             events: &mut self.events,
             scripts: &mut self.scripts,
             states: &|path| self.index.find(self.chart, path),
+            suggestions: &self.suggestions,
         };
         compile(&mut names).unwrap_or_else(|found| {
-            let what = what();
+            let what = what(&self.names);
             self.found.extend(found.into_iter().map(|mut diagnostic| {
                 diagnostic.message = format!("{} ({what})", diagnostic.message);
                 diagnostic

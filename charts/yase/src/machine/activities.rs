@@ -1,5 +1,6 @@
 //! The activities of BASIC states: their phases, and the scopes they lock.
 
+use crate::bits::BitSet;
 use crate::compile::{CompiledChart, NodeIndex};
 use crate::host::Outcome;
 use crate::ids::Activation;
@@ -10,6 +11,8 @@ use crate::machine::machine_state::MachineState;
 #[derive(Clone, Debug)]
 pub(crate) struct ActivityTable {
     slots: Box<[ActivityState]>,
+    /// The activities that are not idle: few of a large chart.
+    used: BitSet,
     pub(crate) count: u64,
     /// Whether one has been queued since the last query.
     pub(crate) queued: bool,
@@ -43,19 +46,23 @@ pub(crate) enum InvocationPhase {
 impl ActivityTable {
     pub(crate) fn new(count: usize) -> ActivityTable {
         let slot = ActivityState { phase: InvocationPhase::Idle, number: 0, cancelled: false };
-        ActivityTable { slots: vec![slot; count].into(), count: 0, queued: false }
+        ActivityTable { slots: vec![slot; count].into(), used: BitSet::new(count), count: 0, queued: false }
     }
 
     /// Copies the activities of another machine of the same chart.
     pub(crate) fn copy_from(&mut self, other: &ActivityTable) {
-        self.slots.copy_from_slice(&other.slots);
+        for activity in self.used.members().chain(other.used.members()) {
+            self.slots[activity] = other.slots[activity];
+        }
+        self.used.copy_from(&other.used);
         (self.count, self.queued) = (other.count, other.queued);
     }
 
     pub(crate) fn reset(&mut self) {
-        for slot in &mut self.slots {
-            slot.phase = InvocationPhase::Idle;
+        for activity in self.used.members() {
+            self.slots[activity].phase = InvocationPhase::Idle;
         }
+        self.used.clear();
     }
 
     /// Whether activities may wait to be started, as of the last query.
@@ -64,8 +71,14 @@ impl ActivityTable {
         std::mem::take(&mut self.queued)
     }
 
-    pub(crate) fn slots(&self) -> &[ActivityState] {
-        &self.slots
+    /// The activities that are not idle, in ascending order.
+    pub(crate) fn used(&self) -> impl Iterator<Item = (usize, ActivityState)> {
+        self.used.members().map(|activity| (activity, self.slots[activity]))
+    }
+
+    /// The memory of the activities, in bytes.
+    pub(crate) fn bytes(&self) -> usize {
+        size_of_val(&*self.slots)
     }
 
     #[inline]
@@ -73,6 +86,17 @@ impl ActivityTable {
         self.slots[activity]
     }
 
+    /// Sets an activity, also to a phase other than idle.
+    #[inline]
+    pub(crate) fn set(&mut self, activity: usize, state: ActivityState) {
+        match state.phase {
+            InvocationPhase::Idle => self.used.remove(activity),
+            _ => self.used.insert(activity),
+        }
+        self.slots[activity] = state;
+    }
+
+    /// An activity that is not idle and does not become so.
     #[inline]
     pub(crate) fn slot_mut(&mut self, activity: usize) -> &mut ActivityState {
         &mut self.slots[activity]
@@ -86,8 +110,8 @@ impl MachineState {
         self.activities.count += 1;
         self.activities.queued = true;
         let number = self.activities.count;
-        *self.activities.slot_mut(activity) =
-            ActivityState { phase: InvocationPhase::Queued, number, cancelled: false };
+        self.activities
+            .set(activity, ActivityState { phase: InvocationPhase::Queued, number, cancelled: false });
         self.lock(chart, place);
     }
 

@@ -6,7 +6,7 @@ use crate::compile::{NodeIndex, Owner};
 use crate::host::Host;
 use crate::ids::ActionLocation;
 use crate::machine::actions::ActionContext;
-use crate::machine::activities::InvocationPhase;
+use crate::machine::activities::{ActivityState, InvocationPhase};
 use crate::machine::step::Macrostep;
 use crate::semantics::{ExitOrder, TimerScope};
 use crate::statechart::NodeKind;
@@ -93,7 +93,7 @@ impl<H: Host> Macrostep<'_, H> {
             InvocationPhase::Running if !slot.cancelled => self.host.cancel(activation),
             _ => {}
         }
-        self.run.activities.slot_mut(activity).phase = InvocationPhase::Idle;
+        self.run.activities.set(activity, ActivityState { phase: InvocationPhase::Idle, ..slot });
         if self.run.running.contains(place.index()) {
             self.run.unlock(self.chart, place);
         }

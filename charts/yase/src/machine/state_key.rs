@@ -75,15 +75,10 @@ impl Machine {
             }
             key.push(u32::MAX);
         }
-        for (place, slots) in run.activities.slots().chunks(8).enumerate() {
-            let word = slots.iter().fold(0, |word, slot| word << 4 | phase(slot));
-            if word != 0 {
-                key.extend([place as u32, word]);
-            }
-        }
+        key.extend(run.activities.used().map(|(activity, slot)| (activity as u32) << 4 | phase(&slot)));
         key.push(u32::MAX);
-        for (timer, slot) in run.timers.slots.iter().enumerate() {
-            let word = self.timer_key(timer, *slot, sight);
+        for (timer, armed) in run.timers.armed() {
+            let word = self.timer_key(timer, armed, sight);
             if word != 0 {
                 key.extend([timer as u32, word]);
             }
@@ -99,8 +94,7 @@ impl Machine {
         }
     }
 
-    fn timer_key(&self, timer: usize, slot: Option<ArmedTimer>, sight: &RelevantState) -> u32 {
-        let Some(deadline) = slot else { return 0 };
+    fn timer_key(&self, timer: usize, deadline: ArmedTimer, sight: &RelevantState) -> u32 {
         let expiry = Some(timer as u32);
         let is_as_unset = deadline.expired
             && !sight.distinguished_timers.contains(timer)
@@ -141,38 +135,28 @@ impl Machine {
 
     /// Postpones all timers that are set until they are chosen to expire.
     pub fn postpone_timers(&mut self) {
-        for deadline in self.run.timers.slots.iter_mut().flatten().filter(|deadline| !deadline.expired) {
-            deadline.moment = LATER;
-        }
-        self.run.timers.recompute_next();
+        self.run.timers.postpone(LATER);
     }
 
     /// The timers that are set and have not expired, by number.
     pub fn timers_set(&self) -> Vec<usize> {
-        let slots = self.run.timers.slots.iter().enumerate();
-        slots.filter(|(_, slot)| slot.is_some_and(|it| !it.expired)).map(|(timer, _)| timer).collect()
+        let waiting = self.run.timers.armed().filter(|(_, it)| !it.expired);
+        waiting.map(|(timer, _)| timer).collect()
     }
 
     /// The timers set since the last postponement, with their durations.
     pub fn timers_started(&self) -> Vec<(usize, Duration)> {
-        let slots = self.run.timers.slots.iter().enumerate();
-        let started = slots.filter_map(|(timer, slot)| {
-            let deadline = slot.filter(|it| !it.expired && it.moment != LATER)?;
-            Some((timer, deadline.moment.since(self.run.now)))
-        });
-        started.collect()
+        let started = self.run.timers.armed().filter(|(_, it)| !it.expired && it.moment != LATER);
+        started.map(|(timer, it)| (timer, it.moment.since(self.run.now))).collect()
     }
 
     /// Makes a timer expire in the next step. Returns whether it was set.
     pub fn make_due(&mut self, timer: usize) -> bool {
         let now = self.next_moment();
-        let Some(Some(deadline)) = self.run.timers.slots.get_mut(timer) else { return false };
-        let is_set = !deadline.expired;
-        if is_set {
-            deadline.moment = now;
-            self.run.timers.recompute_next();
-        }
-        is_set
+        let Some(armed) = self.run.timers.slot(timer).filter(|armed| !armed.expired) else { return false };
+        self.run.timers.set_slot(timer, Some(ArmedTimer { moment: now, ..armed }));
+        self.run.timers.recompute_next();
+        true
     }
 
     /// Whether an event of that name waits to be offered again.
@@ -207,7 +191,7 @@ impl Machine {
     /// The memory of a machine of this chart, in bytes, roughly.
     pub fn estimated_bytes(&self) -> usize {
         let sets = 12 * self.run.active.words().count() * size_of::<u64>();
-        let slots = size_of_val(self.run.activities.slots()) + size_of_val(&*self.run.timers.slots);
+        let slots = self.run.activities.bytes() + self.run.timers.bytes();
         let records: usize = self.run.records.iter().map(|it| 32 + 8 * it.places.len()).sum();
         size_of::<Machine>() + sets + slots + records + 64 * self.run.queues.all().count()
     }
@@ -223,8 +207,8 @@ impl Machine {
     /// The running activities.
     pub fn running(&self) -> Vec<Activation> {
         let chart: &CompiledChart = &self.chart;
-        let running = chart.activities.iter().enumerate().filter_map(|(activity, &place)| {
-            let slot = self.run.activities.slot(activity);
+        let running = self.run.activities.used().filter_map(|(activity, slot)| {
+            let place = chart.activities[activity];
             (slot.phase == InvocationPhase::Running).then(|| self.run.activation(chart, place, slot))
         });
         if self.run.status == Status::Running { running.collect() } else { Vec::new() }

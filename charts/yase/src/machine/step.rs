@@ -357,8 +357,8 @@ impl<'a, H: Host> Macrostep<'a, H> {
 
     /// Stops without leaving any state.
     pub(crate) fn halt(&mut self, status: Status) {
-        for (activity, &place) in self.chart.activities.iter().enumerate() {
-            let slot = self.run.activities.slot(activity);
+        for (activity, slot) in self.run.activities.used() {
+            let place = self.chart.activities[activity];
             let activation = self.run.activation(self.chart, place, slot);
             match slot.phase {
                 InvocationPhase::Running if !slot.cancelled => self.host.cancel(activation),

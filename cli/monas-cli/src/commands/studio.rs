@@ -1,17 +1,14 @@
 //! `monas studio`: a view of a run or of a tape in the browser.
 
-#[cfg(feature = "soccer")]
-mod soccer_field;
-
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
 use clap::{Args, ValueHint};
 use clap_complete::engine::ArgValueCandidates;
-use monas::Registry;
+use monas::{Registry, Timestamp};
 use monas_studio::{
-    AsemeLanguage, ListenAddress, ModelWorkspace, Pace, Scene, Studio, StudioSettings, TapeRun,
+    AsemeLanguage, ListenAddress, ModelWorkspace, Pace, Scene, SceneEvent, Studio, StudioSettings, TapeRun,
 };
 use monas_tape::Recording;
 
@@ -79,6 +76,16 @@ impl ListenArgument {
     pub(crate) fn is_given(&self) -> bool {
         self.listen.is_some() || !self.origins.is_empty() || self.allow_control || !self.models.is_empty()
     }
+
+    /// For the studio of a tape.
+    pub(crate) fn require_no_control(&self) -> Result<(), CommandFailure> {
+        match self.allow_control {
+            true => {
+                Err(CommandFailure::Usage("--allow-control is for a run; a tape cannot be changed".into()))
+            }
+            false => Ok(()),
+        }
+    }
 }
 
 impl StudioArguments {
@@ -96,12 +103,11 @@ pub(crate) fn execute(
     let format = arguments.format.value;
     let interrupt = Interrupt::for_console(console).map_err(|error| CommandFailure::failed(format, error))?;
     let _studio = match &arguments.tape {
-        Some(_) if arguments.listen.allow_control && arguments.listen.models.is_empty() => {
-            return Err(CommandFailure::Usage(
-                "--allow-control is for a run; a tape cannot be changed".into(),
-            ));
+        Some(tape) => {
+            arguments.listen.require_no_control()?;
+            let tape = open_tape(tape, format, console)?;
+            serve_tape(tape, arguments.beside.as_deref(), &arguments.listen, format, console)?
         }
-        Some(tape) => serve_tape(tape, arguments.beside.as_deref(), &arguments.listen, format, console)?,
         None if arguments.is_without_run() => serve_models(&arguments.listen, format, console)?,
         None => {
             let selector = RunSelector::of(arguments.run.clone(), None, arguments.format);
@@ -149,15 +155,30 @@ fn announce(studio: Studio, console: &mut CommandOutput<'_>) -> Result<Studio, C
     Ok(studio)
 }
 
+/// Serves the studio of a replayed tape with marks at the differences, until Ctrl-C.
+pub(crate) fn view_replay(
+    tape: &Path,
+    differences: Vec<(Timestamp, SceneEvent)>,
+    listen: &ListenArgument,
+    format: Format,
+    console: &mut CommandOutput<'_>,
+) -> Result<(), CommandFailure> {
+    let interrupt = Interrupt::for_console(console).map_err(|error| CommandFailure::failed(format, error))?;
+    let mut tape = open_tape(tape, format, console)?;
+    tape.mark(differences);
+    let _studio = serve_tape(tape, None, listen, format, console)?;
+    WallClock::start().wait_until(Duration::MAX, &interrupt);
+    Ok(())
+}
+
 /// Serves the studio of a tape, or of two, and prints its address.
 fn serve_tape(
-    tape: &Path,
+    tape: TapeRun,
     beside: Option<&Path>,
     listen: &ListenArgument,
     format: Format,
     console: &mut CommandOutput<'_>,
 ) -> Result<Studio, CommandFailure> {
-    let tape = open_tape(tape, format, console)?;
     let settings = listen.settings(format)?;
     let studio = match beside {
         None => Studio::of_tape(tape, settings),
@@ -194,7 +215,7 @@ fn open_tape(
 /// What this program draws from above.
 #[cfg(feature = "soccer")]
 pub(crate) fn scene() -> Option<Arc<dyn Scene>> {
-    Some(Arc::new(soccer_field::SoccerField))
+    Some(Arc::new(monas_scene::SoccerField))
 }
 
 #[cfg(not(feature = "soccer"))]

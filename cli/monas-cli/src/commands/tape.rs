@@ -12,6 +12,8 @@ mod value_text;
 #[cfg(all(feature = "soccer", unix))]
 mod what_if;
 
+#[cfg(unix)]
+use crate::commands::studio::ListenArgument;
 use crate::terminal::{CommandFailure, CommandOutput, Exit};
 use arguments::ReplayArguments;
 
@@ -33,9 +35,18 @@ pub(crate) fn execute(
         }
         TapeCommand::Replay(arguments) => replay::execute(arguments, console),
         TapeCommand::Verify { file, format } => {
-            let (agents, config) = (Vec::new(), None);
-            let (file, format) = (file.clone(), *format);
-            replay::execute(&ReplayArguments { file, agents, verify: true, config, format }, console)
+            let arguments = ReplayArguments {
+                file: file.clone(),
+                agents: Vec::new(),
+                verify: true,
+                config: None,
+                #[cfg(unix)]
+                studio: false,
+                #[cfg(unix)]
+                listen: ListenArgument::default(),
+                format: *format,
+            };
+            replay::execute(&arguments, console)
         }
         TapeCommand::Cut(arguments) => edit::cut(arguments, console),
         TapeCommand::Merge { files, output, format } => edit::merge(files, output, format.value, console),

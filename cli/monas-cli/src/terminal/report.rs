@@ -53,14 +53,20 @@ pub(crate) fn note(console: &mut CommandOutput<'_>, format: Format, message: &st
 
 /// `2 errors, 1 warning`
 fn count(diagnostics: &[&Diagnostic]) -> String {
-    let errors = diagnostics.iter().filter(|diagnostic| diagnostic.is_error()).count();
-    let others = diagnostics.len() - errors;
+    let of = |severity| diagnostics.iter().filter(|diagnostic| diagnostic.severity == severity).count();
     let plural = |count: usize, word: &str| match count {
         0 => None,
         1 => Some(format!("1 {word}")),
         _ => Some(format!("{count} {word}s")),
     };
-    [plural(errors, "error"), plural(others, "warning")].into_iter().flatten().collect::<Vec<_>>().join(", ")
+    let counts =
+        [(Severity::Error, "error"), (Severity::Warning, "warning"), (Severity::Information, "note")];
+    counts
+        .map(|(severity, word)| plural(of(severity), word))
+        .into_iter()
+        .flatten()
+        .collect::<Vec<_>>()
+        .join(", ")
 }
 
 pub(crate) fn object(diagnostic: &Diagnostic) -> Value {

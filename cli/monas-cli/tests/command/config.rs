@@ -262,3 +262,26 @@ fn without_vision_nothing_publishes_the_ball_and_both_checks_say_so() {
     let check = monas(&["config", "check", &agents]);
     assert!(!check.err.contains("E0369"), "{}", check.err);
 }
+
+#[test]
+fn what_a_body_cannot_do_is_said_with_the_activities_that_rely_on_it() {
+    let check = monas(&["config", "check", "config/rcsssmj.xml"]);
+    assert_eq!(check.code, Some(0), "{}", check.err);
+    let kick = "information[E0370]: body `rcsssmj`: a kick is a run through the ball, which rolls 1 to 5 m; this \
+                concerns `LeftKick`, `RightKick` of Attacker\n  --> config/rcsssmj.xml:";
+    assert!(check.err.contains(kick), "{}", check.err);
+    assert!(check.err.contains("goes neither backwards nor to a side"), "{}", check.err);
+    // No activity of the role dives, and none reads the sonar.
+    assert!(!check.err.contains("without a motion") && !check.err.contains("sonar"), "{}", check.err);
+
+    // In a match the world stands in for what the Nao's interface lacks.
+    let naos = monas(&["config", "check", "config/nao_sim.xml"]);
+    assert_eq!((naos.code, naos.err.as_str()), (Some(0), ""));
+    let role = fs::read_to_string(root().join("config/roles/goalie.xml")).expect("the agents of the role");
+    let role = role.replace("<agents>", "<agents>\n  <body kind=\"nao\"/>");
+    let model = fs::read_to_string(root().join("models/goalie.srm")).expect("the role");
+    let folder = folder(&[("goalie.xml", &role), ("models/goalie.srm", &model)]);
+    let alone = monas(&["config", "check", &at(folder.path(), "goalie.xml")]);
+    let blind = "body `nao`: the robot sees nothing: LoLA has no images; this concerns `Vision` of Goalie";
+    assert!(alone.err.contains(blind), "{}", alone.err);
+}

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Stdio;
 
-use crate::kit::{Answer, command, monas};
+use crate::kit::{Answer, command, monas, root};
 
 fn file(folder: &Path, name: &str, text: &str) -> String {
     let path = folder.join(name);
@@ -141,5 +141,22 @@ fn tables_and_help_fit_the_terminal() {
         };
         let wide: Vec<&str> = text.lines().filter(is_wide).collect();
         assert!(wide.is_empty(), "{wide:#?}");
+    }
+}
+
+#[test]
+fn findings_name_states_briefly_also_if_a_formula_is_long() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let attacker = fs::read_to_string(root().join("models/attacker.srm")).expect("it is there");
+    let path = file(folder.path(), "a.srm", &attacker.replace("PLAYING", "PLAYNG"));
+    let checked = monas(&["model", "check", &path]);
+    assert!(checked.err.contains("no value `PLAYNG` (from `active/"), "{}", checked.err);
+    let converted = monas(&["model", "convert", "models/goalie.srm", "/dev/null", "--as", "scxml"]);
+    assert!(converted.err.contains("has an activity, which SCXML cannot represent"), "{}", converted.err);
+    for line in checked.err.lines().chain(converted.err.lines()) {
+        let is_message = line.starts_with("error[") || line.starts_with("warning[");
+        let mut names = line.split('`').skip(1).step_by(2).filter(|_| is_message);
+        let long = names.find(|name| name.contains('/') && name.chars().count() > 60);
+        assert_eq!(long, None, "{line}");
     }
 }

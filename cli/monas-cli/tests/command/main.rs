@@ -14,6 +14,8 @@ mod copying;
 #[cfg(target_os = "linux")]
 mod crashes;
 #[cfg(unix)]
+mod ctrl_c;
+#[cfg(unix)]
 mod deploy;
 mod doctor;
 #[cfg(unix)]

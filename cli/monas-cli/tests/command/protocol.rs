@@ -49,3 +49,21 @@ fn nonconformance_is_reported_with_positions() {
     );
     assert_eq!(monas(&["model", "conform", AIP]).code, Some(5), "what may be left out is not guarded yet");
 }
+
+#[test]
+fn findings_about_a_role_point_into_the_role_and_use_its_words() {
+    let answer = monas(&["model", "conform", AIP, "models/extended_attacker.srm"]);
+    assert_eq!(answer.code, Some(5));
+    for expected in [
+        "the protocol has `[passBall]/CONDITION -> passBall`, but the player does not",
+        "the player has `[passBall]/CONDITION -> passBall : [Attack.pass_is_open]`, but the protocol does not",
+        " --> models/extended_attacker.srm:20:43\n",
+        "center = WalkTowardsBall . AssessAttack . [passBall]",
+        " --> models/attack.aip:9:5\n",
+    ] {
+        assert!(answer.err.contains(expected), "{expected}: {}", answer.err);
+    }
+    assert!(!answer.err.contains("`0."), "labels: {}", answer.err);
+    let other = monas(&["model", "conform", AIP, EAC, "models/attacker.srm"]);
+    assert!(other.err.contains(" --> models/attacker.srm:6:1\n"), "{}", other.err);
+}

@@ -6,7 +6,7 @@ use std::process::Command;
 
 use serde_json::Value;
 
-use crate::kit::{Answer, monas};
+use crate::kit::{Answer, monas, root};
 use crate::running::{Running, ask};
 
 const MATCH: &str = "config/match.xml";
@@ -182,7 +182,7 @@ fn with_room_again_the_recording_continues_in_a_new_file_and_meanwhile_tools_see
 fn a_full_disk_leaves_a_role_as_it_was() {
     let Some(disk) = SmallDisk::mount("64k") else { return };
     let role = disk.0.path().join("goalie.srm");
-    let goalie = crate::kit::root().join("models/goalie.srm");
+    let goalie = root().join("models/goalie.srm");
     let before = fs::read_to_string(goalie).expect("a role");
     fs::write(&role, &before).expect("there is room");
     // What is left takes a part of the role only.
@@ -193,4 +193,18 @@ fn a_full_disk_leaves_a_role_as_it_was() {
     assert!(answer.err.contains("No space left"), "{}", answer.err);
     assert_eq!(fs::read_to_string(&role).expect("it is there"), before);
     assert_eq!(fs::read_dir(disk.0.path()).expect("a folder").count(), 2, "no draft is left");
+}
+
+/// A limit on the size of files acts like a full disk; by itself it would end the process.
+#[test]
+#[cfg(target_os = "linux")]
+fn a_limit_on_the_size_of_files_is_an_error_and_not_the_end() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let tape = folder.path().join("limited.mcap");
+    let mut shell = Command::new("sh");
+    let script = "ulimit -f 64; exec \"$0\" run \"$1\" --for 3s --no-control --record \"$2\"";
+    shell.args(["-c", script, env!("CARGO_BIN_EXE_monas"), MATCH]).arg(&tape).current_dir(root());
+    let answer: Answer = shell.output().expect("the shell starts").into();
+    assert_eq!((answer.code, results(&answer)), (Some(1), (true, true)), "{answer:?}");
+    assert!(answer.err.contains("cannot be written: File too large"), "{}", answer.err);
 }

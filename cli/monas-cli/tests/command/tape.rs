@@ -170,6 +170,20 @@ fn a_changed_threshold_shows_as_the_first_message_that_differs() {
     assert!(first["fields"].as_array().is_some_and(|fields| !fields.is_empty()), "{first}");
 }
 
+#[cfg(unix)]
+#[test]
+fn a_replay_is_viewed_in_the_studio() {
+    let (folder, _) = changed("models/attacker.srm", "kick_x = 0.15", "kick_x = 0.60");
+    let config = text(&folder.path().join(MATCH));
+    let replay = ["tape", "replay", &tape(), "--config", &config, "--verify", "--studio"];
+    let viewed = crate::running::Running::start(folder.path(), &replay, "studio: http://127.0.0.1:");
+    let answer = viewed.interrupt();
+    assert_eq!(answer.code, Some(5), "{answer:?}");
+    assert!(answer.out.contains("first difference: "), "{answer:?}");
+    let refused = monas(&["tape", "replay", &tape(), "--listen", "127.0.0.1:0"]);
+    assert!(refused.code == Some(2) && refused.err.contains("add --studio"), "{}", refused.err);
+}
+
 #[test]
 fn an_impossible_replay_has_a_reason() {
     let (_folder, part) = fresh("part.mcap");

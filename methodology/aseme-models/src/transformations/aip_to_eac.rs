@@ -38,10 +38,32 @@ fn eac(aip: &Aip, protocol: &Protocol, diagnostics: &mut Vec<Diagnostic>) -> Iac
     let mut eac = Iac::from_statechart(&chart, ChartKind::Inter);
     eac.name.clone_from(&protocol.name);
     eac.description = description(&participants);
+    place(&mut eac, protocol, &participants);
     for participant in participants {
         diagnostics.extend(exits(&mut eac, participant));
     }
     eac
+}
+
+/// Gives nodes and transitions the spans of the formulas that they are made from.
+fn place(eac: &mut Iac, protocol: &Protocol, parts: &[&Participant]) {
+    let mut places = vec![protocol.place; eac.nodes.len()];
+    let tops = participants(eac);
+    for (index, node) in eac.nodes.iter().enumerate() {
+        let part = if tops.contains(&index) { part_named(parts, &node.name) } else { None };
+        let around = node.parent.and_then(|parent| places.get(parent).copied());
+        places[index] = part.map(|part| part.liveness_place).or(around).unwrap_or(protocol.place);
+    }
+    for (node, place) in eac.nodes.iter_mut().zip(&places) {
+        node.place = *place;
+    }
+    for transition in &mut eac.transitions {
+        transition.place = places[transition.target];
+    }
+}
+
+fn part_named<'a>(parts: &[&'a Participant], name: &str) -> Option<&'a Participant> {
+    parts.iter().copied().find(|part| formula_name(&part.name) == name)
 }
 
 /// The formulas of a protocol and its participants as one text, and the participant of each section
@@ -109,6 +131,7 @@ fn exits(eac: &mut Iac, participant: &Participant) -> Vec<Diagnostic> {
             source: node,
             target,
             te: format!("[{outcome}]"),
+            place: participant.place,
             ..IacTransition::default()
         });
     }

@@ -14,7 +14,6 @@ use yase_explore::{Exploration, ExplorationProgress};
 
 use crate::check_settings::CheckSettings;
 use crate::checked_model::CheckedModel;
-use crate::checked_model::timers;
 use crate::finding::Finding;
 use crate::logic;
 use crate::program_symbols::ProgramSymbols;
@@ -111,13 +110,6 @@ pub(crate) fn names_like_formulas(subject: &CheckedModel) -> Vec<Diagnostic> {
         .collect()
 }
 
-/// So many transitions that read a message on one blackboard are compared with each that writes it.
-const READERS: usize = 16;
-
-/// So many blackboards are compared with that of each transition that writes a message. Those of
-/// regions that are not apart from it are the ones around it and inside it.
-const BOARDS: usize = 1_000;
-
 /// M11: a transition of one region writes what one of another region may read in the same step, and
 /// does not see yet.
 pub(crate) fn same_step(subject: &CheckedModel) -> Vec<Diagnostic> {
@@ -125,18 +117,16 @@ pub(crate) fn same_step(subject: &CheckedModel) -> Vec<Diagnostic> {
     if !subject.chart.nodes().any(|(_, node)| node.kind == NodeKind::And) {
         return found;
     }
-    // By message, trigger and blackboard: with one transition of another region all are apart.
-    let mut readers: BTreeMap<(String, String), BTreeMap<NodeId, Vec<TransitionId>>> = BTreeMap::new();
+    // By message and trigger: the readers in the order of their sources in a walk through the tree.
+    let mut readers: BTreeMap<(String, String), Vec<(u32, TransitionId)>> = BTreeMap::new();
     let trigger = |id| subject.trigger(id).map_or_else(String::new, ToString::to_string);
     for (id, transition) in subject.chart.transitions() {
         for message in transition.expression.guard.iter().flat_map(logic::messages) {
-            let boards = readers.entry((message, trigger(id))).or_default();
-            let of_board = boards.entry(timers::blackboard(subject, id)).or_default();
-            if of_board.len() < READERS {
-                of_board.push(id);
-            }
+            let number = subject.extent(transition.source).0;
+            readers.entry((message, trigger(id))).or_default().push((number, id));
         }
     }
+    readers.values_mut().for_each(|readers| readers.sort_unstable());
     for (writing, transition) in subject.chart.transitions() {
         let written = transition.expression.actions.iter().filter_map(|action| match &action.kind {
             ActionKind::Assign { target, .. } => message_of(target),
@@ -144,17 +134,38 @@ pub(crate) fn same_step(subject: &CheckedModel) -> Vec<Diagnostic> {
         });
         for message in written.collect::<BTreeSet<String>>() {
             let key = (message, trigger(writing));
-            let board = timers::blackboard(subject, writing);
-            let boards = readers.get(&key).into_iter().flatten().filter(|(other, _)| **other != board);
-            let mut ids = boards.take(BOARDS).flat_map(|(_, ids)| ids).copied();
-            let apart = |&id: &TransitionId| {
-                subject.apart(transition.source, subject.transition(id).source).is_some()
-            };
-            let (reader, message) = (ids.find(apart), key.0);
-            found.extend(reader.map(|reading| written_in_same_step(subject, writing, reading, &message)));
+            let of_message = readers.get(&key).map_or(&[][..], Vec::as_slice);
+            let reader = reader_apart(subject, transition.source, of_message);
+            found.extend(reader.map(|reading| written_in_same_step(subject, writing, reading, &key.0)));
         }
     }
     found
+}
+
+/// A reader in a region that is active together with a node, and apart from it: one inside an AND
+/// around the node, but not inside the node's own region of it.
+fn reader_apart(
+    subject: &CheckedModel,
+    node: NodeId,
+    readers: &[(u32, TransitionId)],
+) -> Option<TransitionId> {
+    let within = |node: NodeId| {
+        let (first, end) = subject.extent(node);
+        let place = |number: u32| readers.partition_point(|&(at, _)| at < number);
+        place(first)..place(end)
+    };
+    let mut region = node;
+    subject.chart.ancestors(node).find_map(|around| {
+        let own = std::mem::replace(&mut region, around);
+        if subject.kind(around) != NodeKind::And {
+            return None;
+        }
+        let (all, own) = (within(around), within(own));
+        // a transition out of the AND itself is in none of its regions
+        let before = readers[all.start..own.start].iter();
+        let mut others = before.chain(&readers[own.end..all.end]).map(|&(_, id)| id);
+        others.find(|&id| subject.chart.transition(id).source != around)
+    })
 }
 
 fn message_of(field: &Path) -> Option<String> {

@@ -50,6 +50,7 @@ fn unknown_fields(participant: &Participant, world: &ProgramSymbols) -> Vec<Diag
             events: &mut EventInterner::new(),
             scripts: &mut ScriptInterner::new(),
             states: &|_| None,
+            suggestions: &Suggestions::default(),
         });
         for wrong in compiled.err().unwrap_or_default() {
             let message = format!("in `[{condition}]` of `{}`: {}", participant.name, wrong.message);

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use yase::diagnostic::nearest;
 use yase::expression::{Expression, ExpressionKind, Path};
-use yase::{Diagnostic, Source};
+use yase::{Diagnostic, Source, TypeEnvironment};
 
 use super::compiled_property::AtomicProposition;
 use super::explore::{ExplorationVerdict, explored};
@@ -82,7 +82,7 @@ fn bound(
     abstraction: &Abstraction,
     settings: &CheckSettings,
 ) -> Result<(BoundProperty, Vec<Diagnostic>), Vec<Diagnostic>> {
-    let bound = bind(property, &abstraction.chart)?;
+    let bound = bind(property, &abstraction.chart, &TypeEnvironment::default())?;
     let doubts = match &settings.world {
         Some(world) => {
             guards(&bound.plan, &abstraction.chart, &world.vocabulary)?;

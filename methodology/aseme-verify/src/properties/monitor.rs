@@ -31,7 +31,7 @@ pub enum MonitorVerdict {
 /// let chart = aseme_models::statechart_of(&role).0.compile(&TypeEnvironment::default()).expect("it is in order");
 /// let text = "property \"it walks\": always (entering Look implies eventually entering Walk within 2 s)";
 /// let (properties, _) = parse(text);
-/// let plan = bind(&properties[0], &chart).expect("its names are known").plan;
+/// let plan = bind(&properties[0], &chart, &TypeEnvironment::default()).expect("its names are known").plan;
 /// let (look, walk) = (1, 2); // a bit for each atom, in the order in which they stand in the property
 ///
 /// let second = 1_000_000_000;

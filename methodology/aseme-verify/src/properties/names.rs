@@ -2,11 +2,12 @@
 
 use std::sync::Arc;
 
-use yase::diagnostic::nearest;
+use yase::diagnostic::{Suggestions, nearest};
 use yase::expression::{
-    EventId, EventInterner, Expression, ExpressionKind, Guard, Name, NameScope, ScriptInterner,
-    TransitionExpression,
+    CompiledTrigger, EventId, EventInterner, Expression, ExpressionKind, Guard, Name, NameScope,
+    ScriptInterner, TransitionExpression, parse_transition_at,
 };
+use yase::vocabulary::TopicEntry;
 use yase::{CompiledChart, Diagnostic, NodeId, NodeKind, TypeEnvironment};
 
 use super::compiled_property::{AtomicProposition, CompiledProperty, Lowering};
@@ -29,11 +30,15 @@ pub struct BoundProperty {
 /// # Errors
 /// Names that the chart does not have (E0845, E0846), timers in a condition (E0841), and a property
 /// that is too large (E0844).
-pub fn bind(property: &Property, chart: &CompiledChart) -> Result<BoundProperty, Vec<Diagnostic>> {
+pub fn bind(
+    property: &Property,
+    chart: &CompiledChart,
+    vocabulary: &TypeEnvironment,
+) -> Result<BoundProperty, Vec<Diagnostic>> {
     let mut found = Vec::new();
     let is_lasting = matches!(property.formula.kind, PropertyFormulaKind::Always(_));
     let plan = |holds: bool, found: &mut Vec<Diagnostic>| {
-        let lookup = |formula: &PropertyFormula| atom(formula, chart, found);
+        let lookup = |formula: &PropertyFormula| atom(formula, chart, vocabulary, found);
         Lowering::new(&property.name, is_lasting, lookup).finish(&property.formula, holds)
     };
     let made = plan(true, &mut found);
@@ -53,13 +58,14 @@ pub fn bind(property: &Property, chart: &CompiledChart) -> Result<BoundProperty,
 fn atom(
     formula: &PropertyFormula,
     chart: &CompiledChart,
+    vocabulary: &TypeEnvironment,
     found: &mut Vec<Diagnostic>,
 ) -> Option<AtomicProposition> {
     let looked_up = match &formula.kind {
         PropertyFormulaKind::In(name) => state(name, chart).map(AtomicProposition::In),
         PropertyFormulaKind::Entering(name) => state(name, chart).map(AtomicProposition::Entering),
         PropertyFormulaKind::Leaving(name) => state(name, chart).map(AtomicProposition::Leaving),
-        PropertyFormulaKind::Event(name) => event(name, chart).map(AtomicProposition::Event),
+        PropertyFormulaKind::Event(name) => event(name, chart, vocabulary).map(AtomicProposition::Event),
         PropertyFormulaKind::Condition(condition) => {
             without_timers(condition, chart).map(AtomicProposition::Condition)
         }
@@ -105,19 +111,65 @@ pub(crate) fn state(name: &Name, chart: &CompiledChart) -> Result<NodeId, Diagno
     }
 }
 
-/// Resolves the name of an event.
-pub(crate) fn event(name: &Name, chart: &CompiledChart) -> Result<EventId, Diagnostic> {
+/// Resolves an event, spelled as a trigger spells it: a name (`kick`), or a message whose arrival
+/// the chart awaits (`receiver.ready.Signal.Ready`).
+pub(crate) fn event(
+    name: &Name,
+    chart: &CompiledChart,
+    vocabulary: &TypeEnvironment,
+) -> Result<EventId, Diagnostic> {
     let events = chart.events();
-    if let Some(event) = events.find(&name.text) {
+    if let Some(event) = events.find(&name.text).or_else(|| awaited(name, chart, vocabulary)) {
         return Ok(event);
     }
     let message = format!("the chart `{}` has no event `{}`", chart.statechart().name, name.text);
     let wrong = Diagnostic::error("E0846", name.place.0, message);
-    let known: Vec<&str> = events.ids().map(|event| events.name(event)).collect();
-    Err(match nearest(&name.text, known.iter().copied()) {
+    let spelled = |event: EventId| spelling(event, chart, vocabulary);
+    let known: Vec<String> = events.ids().map(spelled).collect();
+    Err(match nearest(&name.text, known.iter().map(String::as_str)) {
         Some(near) => wrong.with_hint(format!("did you mean `{near}`?")),
         None => wrong.with_hint("the events of a chart are those that its triggers and actions name"),
     })
+}
+
+/// The event of the chart that a trigger with this text denotes.
+fn awaited(name: &Name, chart: &CompiledChart, vocabulary: &TypeEnvironment) -> Option<EventId> {
+    let (expression, wrong) = parse_transition_at(&name.text, name.place.0.start);
+    if wrong.iter().any(Diagnostic::is_error) {
+        return None;
+    }
+    let mut events = chart.events().clone();
+    let trigger = TransitionExpression { trigger: expression.trigger, ..TransitionExpression::default() };
+    let compiled = trigger.compile(&mut NameScope {
+        vocabulary,
+        constants: &chart.statechart().constants,
+        timers: &[],
+        events: &mut events,
+        scripts: &mut ScriptInterner::new(),
+        states: &|_| None,
+        suggestions: &Suggestions::default(),
+    });
+    match compiled.ok()?.trigger? {
+        CompiledTrigger::OneOf(ids) if ids.len() == 1 => {
+            ids.first().copied().filter(|id| (id.0 as usize) < chart.events().len())
+        }
+        _ => None,
+    }
+}
+
+/// How a trigger names an event.
+fn spelling(event: EventId, chart: &CompiledChart, vocabulary: &TypeEnvironment) -> String {
+    let events = chart.events();
+    let topic = events.topic(event).and_then(|id| vocabulary.topics.iter().find(|topic| topic.id == id));
+    let Some(topic) = topic else { return events.name(event).to_owned() };
+    let last = topic.path.rsplit('/').next().unwrap_or(&topic.path);
+    let is_alone = |it: &&TopicEntry| it.path.rsplit('/').next() == Some(last);
+    let name = match vocabulary.topics.iter().filter(is_alone).nth(1) {
+        None => last.to_owned(),
+        Some(_) => format!("`{}`", topic.path.replace('/', ".")),
+    };
+    let host = events.host(event).map_or(String::new(), |host| format!("{host}."));
+    format!("{host}{name}.{:?}.{}", topic.kind, topic.message)
 }
 
 /// Rejects timers of the chart in a condition: exploration and monitors would evaluate them
@@ -163,6 +215,7 @@ pub fn guards(
             events: &mut EventInterner::new(),
             scripts: &mut ScriptInterner::new(),
             states: &|_| None,
+            suggestions: &Suggestions::default(),
         });
         match compiled {
             Ok(compiled) => guards.push(compiled.guard),

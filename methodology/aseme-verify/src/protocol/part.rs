@@ -2,7 +2,10 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::{BoundaryTransitions, Conformance, guard};
+use yase::NodeId;
+
+use super::{BoundaryTransitions, Conformance, guard, names};
+use crate::diagnostic_names::DiagnosticNames;
 use crate::logic::GuardSolver;
 use aseme_models::iac::{Iac, IacTransition};
 use aseme_models::transformations::{ShapeMatch, same_shape};
@@ -18,6 +21,7 @@ pub(crate) fn is_inside(chart: &Iac, node: usize, outer: usize) -> bool {
 pub(crate) fn guarded(chart: &Iac, part: usize, found: &mut Conformance) {
     let conditions = (0..chart.nodes.len())
         .filter(|&node| chart.nodes[node].kind == "CONDITION" && is_inside(chart, node, part));
+    let names = names(chart);
     for condition in conditions {
         let ways: Vec<&IacTransition> =
             chart.transitions.iter().filter(|it| it.source == condition).collect();
@@ -27,7 +31,7 @@ pub(crate) fn guarded(chart: &Iac, part: usize, found: &mut Conformance) {
             ways.iter().filter(|way| !ends(way) && guard(way).is_none()).collect();
         let spared = if may_be_left_out { 0 } else { 1 };
         for way in open.iter().skip(spared) {
-            let name = chart.nodes[way.target].written();
+            let name = names.name(NodeId(way.target as u32));
             let message = format!("`{name}` is always executed: its transition has no guard");
             let hint = "add a guard";
             found.report("E0866", way.place.0, message, hint);
@@ -75,6 +79,7 @@ fn inside(player: &Iac, eac: &Iac, pairs: &BTreeMap<usize, usize>, found: &mut C
     let is_top = |node: usize| player.nodes[node].parent.is_none_or(|parent| !own.contains(&parent));
     let mut there: Vec<&IacTransition> =
         player.transitions.iter().filter(|it| own.contains(&it.source) && own.contains(&it.target)).collect();
+    let (own_names, their_names) = (names(player), names(eac));
     let words = |it: &IacTransition| yase::expression::parse_transition(&it.te).0.to_string();
     for theirs in &eac.transitions {
         let (Some(&source), Some(&target)) = (pairs.get(&theirs.source), pairs.get(&theirs.target)) else {
@@ -88,9 +93,8 @@ fn inside(player: &Iac, eac: &Iac, pairs: &BTreeMap<usize, usize>, found: &mut C
         match same {
             Some(same) => drop(there.remove(same)),
             None => {
-                let (from, to) = (eac.nodes[theirs.source].written(), eac.nodes[theirs.target].written());
                 let message =
-                    format!("the protocol has `{from} -> {to} : {}`, but the player does not", theirs.te);
+                    format!("the protocol has `{}`, but the player does not", written(&their_names, theirs));
                 found.report(
                     "E0867",
                     player.nodes[source].place.0,
@@ -102,9 +106,18 @@ fn inside(player: &Iac, eac: &Iac, pairs: &BTreeMap<usize, usize>, found: &mut C
     }
     // one from the part to itself is a way into it
     for more in there.into_iter().filter(|it| !(it.source == it.target && is_top(it.source))) {
-        let (from, to) = (player.nodes[more.source].written(), player.nodes[more.target].written());
-        let message = format!("the player has `{from} -> {to} : {}`, but the protocol does not", more.te);
+        let message = format!("the player has `{}`, but the protocol does not", written(&own_names, more));
         found.report("E0867", more.place.0, message, "merge the protocol's chart again");
+    }
+}
+
+/// A transition with the names of its nodes.
+fn written(names: &DiagnosticNames, transition: &IacTransition) -> String {
+    let name = |node: usize| names.name(NodeId(node as u32));
+    let ends = format!("{} -> {}", name(transition.source), name(transition.target));
+    match transition.te.trim() {
+        "" => ends,
+        expression => format!("{ends} : {expression}"),
     }
 }
 

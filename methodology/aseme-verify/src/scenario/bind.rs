@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use yase::diagnostic::nearest;
+use yase::diagnostic::{Suggestions, nearest};
 use yase::expression::{
     Action, ActionKind, Effect, EventInterner, Guard, Name, NameScope, Origin, Path, ScriptInterner,
     TextPosition, compile_actions, parse_actions_at, parse_transition_at,
@@ -35,7 +35,13 @@ impl ScenarioText {
         vocabulary: &TypeEnvironment,
     ) -> Result<Vec<ScenarioStep>, Vec<Diagnostic>> {
         let blanked = text::without_comments(&self.source.text);
-        let binder = ScenarioBinder { script: self, blanked: &blanked, chart, vocabulary };
+        let binder = ScenarioBinder {
+            script: self,
+            blanked: &blanked,
+            chart,
+            vocabulary,
+            suggestions: Suggestions::default(),
+        };
         let (mut steps, mut found) = (Vec::new(), Vec::new());
         for lines in &self.steps {
             match binder.step(lines) {
@@ -55,6 +61,7 @@ struct ScenarioBinder<'a> {
     blanked: &'a str,
     chart: &'a CompiledChart,
     vocabulary: &'a TypeEnvironment,
+    suggestions: Suggestions,
 }
 
 /// The parsed content of an indented line.
@@ -66,8 +73,12 @@ enum StepDetail {
 impl ScenarioBinder<'_> {
     fn step(&self, lines: &StepLines) -> BindResult<ScenarioStep> {
         let mut found = Vec::new();
-        let cause = self.cause(lines.cause).map_err(|wrong| found.push(wrong));
+        let mut cause = self.cause(lines.cause).map_err(|wrong| found.push(wrong));
         let (mut data, mut expected) = (Vec::new(), Vec::new());
+        if let Some(topic) = cause.as_ref().ok().and_then(|cause| self.own_message(cause)) {
+            data.push((Effect::Publish { topic }, self.passage(lines.cause)));
+            cause = Ok(StepStimulus::Messages);
+        }
         for &span in &lines.details {
             let passage = self.passage(span);
             match self.detail(span) {
@@ -108,8 +119,7 @@ impl ScenarioBinder<'_> {
             ("start", true) => Ok(StepStimulus::Start),
             ("messages", true) => Ok(StepStimulus::Messages),
             ("event", false) => {
-                names::event(&self.name(rest), self.chart)?;
-                Ok(StepStimulus::Event(self.text(rest).to_owned()))
+                names::event(&self.name(rest), self.chart, self.vocabulary).map(StepStimulus::Event)
             }
             ("return", false) => Ok(StepStimulus::Return(self.actor(rest)?, Outcome::Done)),
             ("ongoing", false) => Ok(StepStimulus::Return(self.actor(rest)?, Outcome::Ongoing)),
@@ -121,6 +131,13 @@ impl ScenarioBinder<'_> {
                 Err(Diagnostic::error("E0890", span, message).with_hint(CAUSES))
             }
         }
+    }
+
+    /// The topic of the own host whose message the event of a step stands for.
+    fn own_message(&self, cause: &StepStimulus) -> Option<TopicId> {
+        let StepStimulus::Event(event) = cause else { return None };
+        let events = self.chart.events();
+        events.topic(*event).filter(|_| events.host(*event).is_none())
     }
 
     fn detail(&self, span: Span) -> BindResult<StepDetail> {
@@ -228,6 +245,7 @@ impl ScenarioBinder<'_> {
             events,
             scripts,
             states: &|_| None,
+            suggestions: &self.suggestions,
         }
     }
 

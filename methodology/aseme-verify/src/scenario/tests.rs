@@ -32,14 +32,11 @@ fn wrong(text: &str) -> Vec<String> {
 #[test]
 fn steps_know_what_they_say_and_where() {
     let steps = read("model lamp.srm # the lamp\n\nstart\n  starts Look # and nothing else\nwait 1.5 s\n  not in Shine\nevent off\n").unwrap();
+    let off = chart().events().find("off").unwrap();
     let causes: Vec<&StepStimulus> = steps.iter().map(|step| &step.cause).collect();
     assert_eq!(
         causes,
-        [
-            &StepStimulus::Start,
-            &StepStimulus::Wait(Duration::from_millis(1500)),
-            &StepStimulus::Event("off".into())
-        ]
+        [&StepStimulus::Start, &StepStimulus::Wait(Duration::from_millis(1500)), &StepStimulus::Event(off)]
     );
     let expected = &steps[0].expected[0];
     assert_eq!((expected.passage.text(), expected.passage.line()), ("starts Look", 4));

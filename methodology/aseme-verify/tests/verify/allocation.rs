@@ -35,7 +35,8 @@ fn a_monitor_takes_no_memory() {
     let role = Source::new("r.srm", "Role: r\nLiveness:\nr = a . b . c\n");
     let chart = aseme_models::statechart_of(&role).0.compile(&TypeEnvironment::default()).unwrap();
     let text = "property \"p\": always ((in a implies eventually in b within 2 s) and (in b implies in b until in c within 1 s))";
-    let mut monitor = Monitor::new(bind(&parse(text).0[0], &chart).unwrap().plan);
+    let mut monitor =
+        Monitor::new(bind(&parse(text).0[0], &chart, &TypeEnvironment::default()).unwrap().plan);
     let letters = [1, 1, 2, 2, 4, 0];
     let before = TAKEN.with(Cell::get);
     let mut verdicts = [MonitorVerdict::Lost; 600];

@@ -86,7 +86,7 @@ proptest! {
     ) {
         let chart = chart("r = a || b || c");
         let property = Property { name: "p".into(), formula: formula.clone(), place: TextPosition::default() };
-        let plan = match bind(&property, &chart) {
+        let plan = match bind(&property, &chart, &TypeEnvironment::default()) {
             Ok(bound) => bound.plan,
             Err(too_large) => {
                 prop_assert_eq!(too_large[0].code, "E0844");
@@ -167,7 +167,7 @@ fn chart(formulas: &str) -> CompiledChart {
 fn monitor(text: &str) -> Monitor {
     let (properties, findings) = parse(&format!("property \"p\": {text}"));
     assert_eq!(findings, []);
-    Monitor::new(bind(&properties[0], &chart("r = a . b")).unwrap().plan)
+    Monitor::new(bind(&properties[0], &chart("r = a . b"), &TypeEnvironment::default()).unwrap().plan)
 }
 
 #[test]

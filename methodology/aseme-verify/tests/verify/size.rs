@@ -6,7 +6,7 @@ use std::fmt::Write;
 use std::ops::ControlFlow;
 
 use aseme_verify::check::{CheckReport, check};
-use aseme_verify::{CheckProgress, CheckSettings, ProgressObserver};
+use aseme_verify::{CheckProgress, CheckSettings, Finding, ProgramSymbols, ProgressObserver};
 use yase::Source;
 
 const STATES: usize = 20_000;
@@ -155,4 +155,64 @@ fn checks_before_an_exploration_can_be_stopped() {
     assert_eq!(count(&stopped_at(1), "M09"), 0);
     let all = checked("r.srm", text());
     assert!(!all.is_stopped && count(&all, "M09") == STATES - 1);
+}
+
+/// Names that the program does not have are compared with its names a limited number of times, and
+/// found among the timers of the chart by a binary search.
+#[test]
+fn names_that_the_program_does_not_have_are_each_reported() {
+    let misspelt =
+        |number| format!("A{number} -> A{} : [tt{number}] / StartTimeout(t{number}, 1s)", number + 1);
+    let mut settings = CheckSettings::default();
+    settings.states = 0;
+    settings.world = Some(ProgramSymbols::default());
+    let report = check(&Source::new("linked.srm", role("Transitions", misspelt)), &settings);
+    let unknown = |it: &&Finding| it.diagnostic.message.contains("there is no `tt");
+    assert_eq!(report.findings.iter().filter(unknown).count(), STATES - 1);
+}
+
+/// A writer finds the one reader of another region among many of its own.
+#[test]
+fn a_reader_in_another_region_is_found_among_any_number_of_own_readers() {
+    let mut text =
+        String::from("IAC: r\n\nStates:\n  r OR\n    START\n    both AND\n      W OR\n        START\n");
+    for number in 0..40 {
+        writeln!(text, "        A{number} BASIC").unwrap();
+    }
+    text += "        END\n      R OR\n        START\n        B BASIC\n        END\n\nTransitions:\n  r/START -> both\n  W/START -> A0\n  R/START -> B\n";
+    for number in 0..39 {
+        writeln!(text, "  A{number} -> A{} : [Ball.x > 1] / Ball.x = 1", number + 1).unwrap();
+    }
+    text += "  A39 -> W/END\n  B -> R/END : [Ball.x > 2]\n";
+    let report = checked("readers.iac", text);
+    assert!(!report.is_unreadable(), "{:?}", codes(&report));
+    assert_eq!(count(&report, "M11"), 39);
+    assert!(
+        report
+            .findings
+            .iter()
+            .filter(|it| it.diagnostic.code == "M11")
+            .all(|it| it.diagnostic.message.starts_with("`B -> "))
+    );
+}
+
+/// Paths beyond the limit are not compared, and the check says so.
+#[test]
+fn paths_that_are_not_compared_are_said() {
+    let chart = |branches: usize| {
+        let guarded = "  CONDITION -> b : [Ball.distance > 2]\n".repeat(branches);
+        format!(
+            "IAC: r\n\nStates:\n  r OR\n    START\n    a BASIC\n    CONDITION\n    b BASIC\n    END\n\nTransitions:\n  \
+             START -> a\n  a -> CONDITION : [Ball.y < 1]\n{guarded}  CONDITION -> END\n  b -> END\n"
+        )
+    };
+    let said = |branches: usize| {
+        let report = checked("paths.iac", chart(branches));
+        assert!(!report.is_unreadable(), "{:?}", codes(&report));
+        report
+            .findings
+            .iter()
+            .any(|it| it.diagnostic.message.contains("are not found") && !it.diagnostic.is_error())
+    };
+    assert_eq!((said(100), said(5_000)), (false, true));
 }

@@ -181,7 +181,7 @@ impl<'a> ScenarioRun<'a> {
         match &step.cause {
             StepStimulus::Start => self.runner.start(self.now),
             StepStimulus::Messages => {}
-            StepStimulus::Event(name) => _ = self.runner.raise(name),
+            StepStimulus::Event(event) => self.runner.raise_id(*event),
             StepStimulus::Return(node, outcome) => self.returns(*node, *outcome, step)?,
             StepStimulus::Wait(length) => self.advance_time(*length, step)?,
             StepStimulus::Timer(timer) => self.wait_for(timer, step)?,

@@ -22,8 +22,12 @@ Stand -> Stand interrupts : alarm
 ";
 
 fn differences(scenario: &str) -> Vec<String> {
+    differences_in(ROLE, scenario)
+}
+
+fn differences_in(role: &str, scenario: &str) -> Vec<String> {
     let player = ScenarioRunner::new(&Registry::linked()).unwrap();
-    let (chart, found) = aseme_models::statechart_of(&Source::new("r.srm", ROLE));
+    let (chart, found) = aseme_models::statechart_of(&Source::new("r.srm", role));
     assert_eq!(found, []);
     let chart = player.compile(&chart).unwrap();
     let (script, found) = ScenarioText::parse(&Source::new("a.scenario", format!("model r.srm\n{scenario}")));
@@ -135,4 +139,48 @@ fn a_livelock_is_a_difference() {
     let steps = script.bind(&chart, player.vocabulary()).unwrap();
     let found = player.first_difference(&chart, &steps).unwrap().expect("it is in a livelock");
     assert_eq!(found.expected, "the chart to become stable");
+}
+
+const WAITING: &str = "Role: r
+Liveness:
+r = (Wait . Listen . Act) ~
+Transitions:
+Wait -> Listen : host.State.Host
+Listen -> Act : mate.host.State.Host
+";
+
+#[test]
+fn a_message_is_an_event_with_the_spelling_of_triggers() {
+    let scenario = "start
+return Wait
+  in Wait
+event host.State.Host
+  host.team = 4
+  in Listen
+  [host.team == 4]
+return Listen
+event host.State.Host
+  in Listen
+event mate.host.State.Host
+  in Act
+";
+    assert_eq!(differences_in(WAITING, scenario), [""; 0]);
+}
+
+#[test]
+fn a_misspelt_message_is_corrected_with_the_spelling_of_triggers() {
+    let player = ScenarioRunner::new(&Registry::linked()).unwrap();
+    let chart = aseme_models::statechart_of(&Source::new("r.srm", WAITING)).0;
+    let chart = player.compile(&chart).unwrap();
+    let text = "model r.srm\nstart\nevent host.State.Hots\nevent mat.host.State.Host\n";
+    let (script, _) = ScenarioText::parse(&Source::new("a.scenario", text));
+    let wrong = script.bind(&chart, player.vocabulary()).unwrap_err();
+    let wrong: Vec<String> = wrong.iter().map(ToString::to_string).collect();
+    assert_eq!(
+        wrong,
+        [
+            "a.scenario:3:7: error[E0846]: the chart `r` has no event `host.State.Hots` (did you mean `host.State.Host`?)",
+            "a.scenario:4:7: error[E0846]: the chart `r` has no event `mat.host.State.Host` (did you mean `mate.host.State.Host`?)",
+        ]
+    );
 }

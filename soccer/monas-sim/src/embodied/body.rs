@@ -11,10 +11,7 @@ use narukom::Timestamp;
 use super::image_camera::ImageCamera;
 use super::skill::SkillTrack;
 use super::{SharedField, announce};
-use crate::{BodyPhase, Command, Motion, Physics, Senses, Side, Sighting, Velocity};
-
-/// How often a body senses and acts: every second step of the world, 50 Hz.
-const CYCLE: Duration = Duration::from_millis(20);
+use crate::{BodyPhase, Command, Motion, Physics, STEP, Senses, Side, Sighting, Velocity};
 
 /// Interval at which an unchanged announcement is repeated, as by a game controller.
 const ANNOUNCE_EVERY: Duration = Duration::from_millis(500);
@@ -208,8 +205,14 @@ fn anatomy(physics: &Physics, longest_message: usize) -> Anatomy {
             Skill::StandUp,
         ],
         radio: longest_message,
-        ..Anatomy::new("field robot", CYCLE)
+        ..Anatomy::new("field robot", cycle(physics))
     }
+}
+
+/// The cycle of a body: the number of steps of the world that is nearest to its rate.
+fn cycle(physics: &Physics) -> Duration {
+    let steps = (1.0 / (physics.body_rate * STEP)).round().max(1.0);
+    Duration::from_millis((steps * STEP * 1e3).round() as u64)
 }
 
 fn posture(phase: BodyPhase, on_field: bool) -> Posture {
@@ -274,6 +277,12 @@ mod tests {
         let mut body = pitch.body(0).unwrap();
         monas_robot::conformance::check(&mut body);
         assert!(pitch.body(1).is_none());
+    }
+
+    #[test]
+    fn its_cycle_is_the_number_of_steps_that_is_nearest_to_its_rate() {
+        let cycle = |body_rate| cycle(&Physics { body_rate, ..Physics::default() }).as_millis();
+        assert_eq!([50.0, 100.0, 10.0, 83.0].map(cycle), [20, 10, 100, 10]);
     }
 
     #[test]

@@ -3,7 +3,10 @@
 use std::time::Duration;
 
 use monas::{Activity, Blackboard, Progress};
+use monas_robot::Skill;
 use narukom::{Hub, Retention, Timestamp, Topic};
+
+use crate::topics;
 
 /// A hub, the blackboard of the activity under test, and one for all other participants.
 pub(crate) struct ActivityFixture {
@@ -38,11 +41,19 @@ impl ActivityFixture {
         self
     }
 
-    /// Calls the activity once, in its own cycle, and returns whether it is done.
+    /// Calls the activity once, in its own cycle, and returns whether it is done. A skill that it
+    /// requests has to be one that it declares.
     pub(crate) fn run(&mut self, activity: &mut dyn Activity) -> bool {
+        let before = self.latest(topics::MOTION);
         self.blackboard.process_messages(self.now);
         let progress = activity.execute(&mut self.blackboard).unwrap();
         self.blackboard.publish_all(self.now);
+        if let Some(wanted) = self.latest(topics::MOTION).filter(|wanted| before.as_ref() != Some(wanted))
+            && let name = wanted.kind().as_str_name()
+            && Skill::from_str_name(name).is_some()
+        {
+            assert!(activity.topics().skills().contains(&name), "it does not declare {name}");
+        }
         progress == Progress::Done
     }
 

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use monas::{Activity, Blackboard, BoxError, Parameters, Progress, Topics};
-use monas_robot::topics as body;
+use monas_robot::{Skill, topics as body};
 use narukom::Timestamp;
 
 use crate::functionality::head::{Gaze, HeadController};
@@ -79,7 +79,8 @@ impl Activity for MotionController {
     fn topics(&self) -> Topics {
         let topics = Topics::declared().reads(body::SENSORS).reads(topics::GAME_STATE).reads(topics::MOTION);
         let topics = topics.reads(topics::HEAD).reads(topics::LEDS);
-        topics.publishes(body::ACTUATORS).publishes(topics::MOTION_STATE)
+        let topics = topics.publishes(body::ACTUATORS).publishes(topics::MOTION_STATE);
+        topics.performs(Skill::StandUp.as_str_name())
     }
 }
 

@@ -3,6 +3,7 @@
 use std::time::Duration;
 
 use monas::{Activity, Blackboard, BoxError, Progress, Topics};
+use monas_robot::Skill;
 use narukom::Timestamp;
 
 use super::bring_ball::LOOK;
@@ -52,7 +53,8 @@ impl Activity for PassBall {
     fn topics(&self) -> Topics {
         let topics =
             Topics::declared().reads(topics::BALL).reads(topics::MOTION).ends_on(topics::MOTION_STATE);
-        topics.publishes(topics::MOTION).publishes(topics::HEAD)
+        let topics = topics.publishes(topics::MOTION).publishes(topics::HEAD);
+        topics.performs(Skill::KickLeft.as_str_name()).performs(Skill::KickRight.as_str_name())
     }
 }
 

@@ -3,6 +3,7 @@
 use std::time::Duration;
 
 use monas::{Activity, Blackboard, BoxError, Progress, Topics};
+use monas_robot::Skill;
 use narukom::Timestamp;
 
 use super::motion_requests::request_skill;
@@ -64,7 +65,8 @@ macro_rules! skill {
             }
 
             fn topics(&self) -> Topics {
-                Topics::declared().reads(topics::MOTION).ends_on(topics::MOTION_STATE).publishes(topics::MOTION)
+                let topics = Topics::declared().reads(topics::MOTION).ends_on(topics::MOTION_STATE);
+                topics.publishes(topics::MOTION).performs(Skill::$kind.as_str_name())
             }
         }
 

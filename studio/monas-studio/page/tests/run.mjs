@@ -603,6 +603,32 @@ async function steering(browser) {
 }
 
 mkdirSync(SCREENSHOTS, { recursive: true });
+/** The images of the cameras of the chosen robot, on a tape. */
+async function cameras(browser) {
+  const tape = join(mkdtempSync(join(tmpdir(), 'monas-images-')), 'images.mcap');
+  const images = fileURLToPath(new URL('../../../../config/match_images.xml', import.meta.url));
+  execFileSync(PROGRAM, ['run', images, '--for', '200ms', '--no-control', '--record', tape], { stdio: 'ignore' });
+  const studio = start(PROGRAM, ['studio', tape]);
+  try {
+    const { page, faults } = await open(browser, await studio.url);
+    await until(page, 'two images with pixels', () => {
+      const shown = [...document.querySelectorAll('.camera img')];
+      return shown.length === 2 && shown.every((image) => image.complete && image.naturalWidth === 320);
+    });
+    const title = await textOf(page, '.camera h2');
+    await page.keyboard.press('j');
+    await until(page, 'the images of another robot', (before) => {
+      const now = document.querySelector('.camera h2')?.textContent;
+      return now && now !== before && document.querySelectorAll('.camera img').length === 2;
+    }, title);
+    await shot(page, 'cameras');
+    assert.deepEqual(faults, []);
+    await page.close();
+  } finally {
+    await studio.stop();
+  }
+}
+
 const browser = await launch();
 /** With ONLY=words, only the parts with these words in their names. */
 const ONLY = process.env.ONLY ?? '';
@@ -632,6 +658,7 @@ try {
   await check('a studio beside runs follows them', () => beside(browser));
   await check('a tape is played, searched and stepped', () => tape(browser));
   await check('two tapes are shown on one timeline', () => besides(browser));
+  await check('the cameras of a robot are shown', () => cameras(browser));
   await check('an event is raised by its name', () => events(browser));
   await check('a run is steered only with permission', () => steering(browser));
   if ('editor'.includes(ONLY) || ONLY.startsWith('editor')) {

@@ -5,7 +5,7 @@ use std::net::{SocketAddr, TcpStream};
 use std::time::Duration;
 
 use monas::records::foxglove::Log;
-use monas_studio::{Body, Scene, SceneEvent, SceneMessages, ScenePicture, Studio};
+use monas_studio::{Body, Cameras, Scene, SceneEvent, SceneMessages, ScenePicture, Studio};
 use narukom::{State, topic};
 use prost::Message as _;
 use serde_json::Value;
@@ -39,7 +39,26 @@ pub(crate) fn chart(begin: &str, switch_on: &str, switch_off: &str) -> Statechar
 /// Draws one body for each note, with its text as label.
 pub(crate) struct Notes;
 
+/// The camera of a robot whose images are its notes.
+impl Cameras for Notes {
+    fn topic(&self) -> &'static str {
+        "test/note"
+    }
+
+    fn names(&self) -> &[&'static str] {
+        &["eye"]
+    }
+
+    fn images(&self, bytes: &[u8]) -> Option<Vec<Vec<u8>>> {
+        Some(vec![Log::decode(bytes).ok()?.message.into_bytes()])
+    }
+}
+
 impl Scene for Notes {
+    fn cameras(&self) -> Option<&dyn Cameras> {
+        Some(self)
+    }
+
     fn topics(&self) -> &[&'static str] {
         &["test/note"]
     }

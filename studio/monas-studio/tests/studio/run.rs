@@ -475,6 +475,38 @@ fn clients_of_the_foxglove_protocol_get_the_scene_and_the_states_of_charts() {
 }
 
 #[test]
+fn images_go_to_pages_that_ask_for_them_and_to_clients_of_the_foxglove_protocol() {
+    let run = Run::start();
+    run.note("first");
+    let studio = studio(&run.socket(), "127.0.0.1:0", None);
+    let mut viewer = Viewer::open(&studio).unwrap();
+    assert_eq!(viewer.wait_for_link("live")["camera_topic"], "test/note");
+    viewer.send(json!({"type": "camera", "host": "robot"}));
+    // A note may come before the studio watches, so that notes are repeated until one is seen.
+    let seen = viewer.wait(|message| {
+        run.note("an image");
+        let camera = message["camera"].as_object()?;
+        (camera["images"][0]["url"] != from("first")).then(|| message["camera"].clone())
+    });
+    assert_eq!((&seen["host"], &seen["images"][0]["name"]), (&json!("robot"), &json!("eye")));
+    assert_eq!(seen["images"][0]["url"], from("an image"));
+
+    let mut client = FoxgloveClient::open(&studio, "foxglove.sdk.v1", None).unwrap();
+    let channels = client.object("advertise")["channels"].clone();
+    let camera = channels.as_array().unwrap().iter().find(|one| one["topic"] == "/robot/camera/eye").unwrap();
+    assert_eq!(camera["schemaName"], "foxglove.CompressedImage");
+    let image = decoded(&mut client, camera, 5, |image| Some(image.clone()));
+    assert_eq!((&image["format"], &image["frame_id"]), (&json!("png"), &json!("robot/eye")));
+}
+
+/// The address with the bytes of a text.
+fn from(text: &str) -> String {
+    let known = [("first", "Zmlyc3Q="), ("an image", "YW4gaW1hZ2U=")];
+    let (_, encoded) = known.iter().find(|(known, _)| *known == text).unwrap();
+    format!("data:image/png;base64,{encoded}")
+}
+
+#[test]
 fn pages_of_others_need_an_allowed_origin() {
     let run = Run::start();
     let listen = Some("127.0.0.1:0".parse().unwrap());

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use monas::records::{self, foxglove::Log};
-use monas_studio::{Studio, StudioSettings, TapeChart, TapeRun, TransitionQuestion, Verdict};
+use monas_studio::{SceneEvent, Studio, StudioSettings, TapeChart, TapeRun, TransitionQuestion, Verdict};
 use monas_tape::{Recording, Tape};
 use narukom::{Hub, Timestamp};
 use serde_json::{Value, json};
@@ -132,6 +132,17 @@ fn look(viewer: &mut Viewer, seconds: f64) -> (Value, Value) {
 }
 
 #[test]
+fn the_images_of_a_moment_are_those_of_the_tape() {
+    let (_studio, mut viewer, _) = open(6);
+    viewer.send(json!({"type": "camera", "host": "robot"}));
+    for (time, url) in [(5.5, "bm90ZSA1"), (2.5, "bm90ZSAy")] {
+        viewer.send(json!({"type": "seek", "seconds": time}));
+        let url = json!(format!("data:image/png;base64,{url}"));
+        viewer.wait(|message| (message["camera"]["images"][0]["url"] == url).then_some(()));
+    }
+}
+
+#[test]
 fn a_moment_is_the_same_whether_it_is_reached_forwards_or_backwards() {
     let (_studio, mut viewer, tape) = open(6);
     assert_eq!((&tape["begin"], &tape["end"]), (&json!(1.0), &json!(6.0)));
@@ -196,14 +207,21 @@ fn lasting_events_are_marked_where_they_begin() {
         );
     }
     tape.finish().unwrap();
-    let run = TapeRun::new("events", Recording::open(&path).unwrap(), &[], Some(Arc::new(Notes))).unwrap();
+    let mut run =
+        TapeRun::new("events", Recording::open(&path).unwrap(), &[], Some(Arc::new(Notes))).unwrap();
+    let kind = "difference".to_owned();
+    run.mark([(
+        Timestamp::from_nanos(2_500_000_000),
+        SceneEvent { kind, text: "marked".into(), lasts: false },
+    )]);
     let listen = Some("127.0.0.1:0".parse().unwrap());
     let studio = Studio::of_tape(run, StudioSettings { listen, ..StudioSettings::default() }).unwrap();
     let events = Viewer::open(&studio)
         .unwrap()
         .wait(|message| Some(message["tape"]["events"].clone()).filter(Value::is_array));
     let times: Vec<f64> = events.as_array().unwrap().iter().filter_map(|event| event["t"].as_f64()).collect();
-    assert_eq!(times, [1.0, 3.0, 4.0, 5.0]);
+    assert_eq!(times, [1.0, 2.5, 3.0, 4.0, 5.0]);
+    assert_eq!(events[1], json!({"t": 2.5, "kind": "difference", "text": "marked"}));
 }
 
 /// The number of the transition from off to on, whose guard reads a note and a timer.

@@ -137,12 +137,11 @@ impl Capture<'_> {
     }
 
     fn timers(&self) -> Vec<TimerRecord> {
-        let set = self.run.timers.slots.iter().enumerate();
-        set.filter_map(|(timer, slot)| {
-            let deadline = slot.as_ref()?;
+        let set = self.run.timers.armed();
+        set.map(|(timer, deadline)| {
             let timer = self.paths.timer(self.chart, timer);
             let owner = deadline.owner.map(|place| self.paths.place(self.chart, place));
-            Some(TimerRecord { timer, deadline: deadline.moment, expired: deadline.expired, owner })
+            TimerRecord { timer, deadline: deadline.moment, expired: deadline.expired, owner }
         })
         .collect()
     }

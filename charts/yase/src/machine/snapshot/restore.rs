@@ -216,8 +216,8 @@ impl<'a> SnapshotRestorer<'a> {
             &record.state,
         );
         let phase = phase(record.phase);
-        *self.run.activities.slot_mut(activity) =
-            ActivityState { phase, number: record.number, cancelled: record.cancelled };
+        let state = ActivityState { phase, number: record.number, cancelled: record.cancelled };
+        self.run.activities.set(activity, state);
         self.run.activities.queued |= phase == InvocationPhase::Queued;
         if matches!(phase, InvocationPhase::Queued | InvocationPhase::Running) {
             self.run.lock(self.chart, place);
@@ -229,13 +229,13 @@ impl<'a> SnapshotRestorer<'a> {
             let field = format!("timers[{index}].timer");
             let Some(timer) = self.timer(&field, &record.timer) else { continue };
             let name = format!("{}` of `{}", record.timer.name, record.timer.region);
-            self.check_unique(self.run.timers.slots[timer].is_some(), &field, &name);
+            self.check_unique(self.run.timers.slot(timer).is_some(), &field, &name);
             let owner = match &record.owner {
                 Some(path) => self.place(&format!("timers[{index}].owner"), path),
                 None => None,
             };
-            self.run.timers.slots[timer] =
-                Some(ArmedTimer { moment: record.deadline, expired: record.expired, owner });
+            let armed = ArmedTimer { moment: record.deadline, expired: record.expired, owner };
+            self.run.timers.set_slot(timer, Some(armed));
         }
         self.run.timers.recompute_next();
     }

@@ -304,7 +304,7 @@ impl SnapshotRestorer<'_> {
     }
 
     fn has_expired(&self, occurrence: &PoppedEvent, timer: u32) -> bool {
-        let deadline = self.run.timers.slots[timer as usize];
+        let deadline = self.run.timers.slot(timer as usize);
         deadline.is_some_and(|deadline| deadline.expired)
             && self.chart.timers[timer as usize].event == Some(occurrence.event)
     }

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use aseme_models::convert::Model;
 use aseme_models::iac::ChartKind;
 use aseme_models::{Aip, Iac, transformations};
-use aseme_verify::protocol::{Conformance, chart_conforms, parts_taken, player_conforms};
+use aseme_verify::protocol::{Conformance, chart_conforms, parts_taken, player_conforms, role_chart};
 use clap::{Args, ValueHint};
 use serde_json::json;
 use yase::{Diagnostic, Source};
@@ -60,6 +60,8 @@ type NamedChart = (PathBuf, Arc<Source>, Iac);
 /// The models of the files, by kind.
 pub(crate) struct LoadedModels {
     protocols: PathBuf,
+    /// The text of the protocols.
+    source: Arc<Source>,
     aip: Aip,
     /// The given charts of protocols.
     charts: Vec<NamedChart>,
@@ -76,7 +78,7 @@ impl LoadedModels {
         for path in files {
             let (source, model, ..) = valid_model(path, format, console)?;
             match model {
-                Model::Aip(aip) if protocols.is_none() => protocols = Some((path.clone(), aip)),
+                Model::Aip(aip) if protocols.is_none() => protocols = Some((path.clone(), source, aip)),
                 Model::Aip(_) => {
                     return Err(CommandFailure::Usage(format!(
                         "`{}` is a second model of protocols (AIP): charts are checked against one",
@@ -88,14 +90,11 @@ impl LoadedModels {
                 }
                 Model::Chart(chart) => players.push((path.clone(), source, chart)),
                 Model::Role(role) => {
-                    let (chart, found) = aseme::role_to_statechart(role.srm());
-                    if found.iter().any(Diagnostic::is_error) {
+                    let chart = role_chart(role.srm()).map_err(|found| {
                         let found = found.into_iter().map(|found| found.in_source(&source)).collect();
-                        return Err(CommandFailure::Invalid(format, found));
-                    }
-                    // A derived chart has no positions in the role's text.
-                    let source = Source::new(source.name.clone(), "");
-                    players.push((path.clone(), source, Iac::from_statechart(&chart, ChartKind::Intra)));
+                        CommandFailure::Invalid(format, found)
+                    })?;
+                    players.push((path.clone(), source, chart));
                 }
                 other => {
                     let (path, kind) = (path.display(), other.kind());
@@ -105,12 +104,12 @@ impl LoadedModels {
                 }
             }
         }
-        let Some((protocols, aip)) = protocols else {
+        let Some((protocols, source, aip)) = protocols else {
             return Err(CommandFailure::Usage(
                 "no file is a model of protocols (AIP), against which charts are checked".into(),
             ));
         };
-        Ok(LoadedModels { protocols, aip, charts, players })
+        Ok(LoadedModels { protocols, source, aip, charts, players })
     }
 
     /// The charts of the protocols: the given ones, or those derived from the protocols.
@@ -120,10 +119,11 @@ impl LoadedModels {
         }
         let (charts, found) = transformations::aip_to_eac(&self.aip);
         if found.iter().any(Diagnostic::is_error) {
+            let found = found.into_iter().map(|found| found.in_source(&self.source)).collect();
             return Err(CommandFailure::Invalid(format, found));
         }
-        let source = Source::new(self.protocols.display().to_string(), "");
-        Ok(charts.into_iter().map(|chart| (self.protocols.clone(), source.clone(), chart)).collect())
+        let placed = |chart| (self.protocols.clone(), self.source.clone(), chart);
+        Ok(charts.into_iter().map(placed).collect())
     }
 }
 

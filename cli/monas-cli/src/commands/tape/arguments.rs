@@ -151,6 +151,14 @@ pub(crate) struct ReplayArguments {
     /// Use the agents of this configuration instead of the recorded one.
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) config: Option<PathBuf>,
+    /// Then view the tape in the browser, with a mark on the timeline at each difference: serve the
+    /// studio until Ctrl-C, and print its address.
+    #[cfg(unix)]
+    #[arg(long)]
+    pub(crate) studio: bool,
+    #[cfg(unix)]
+    #[command(flatten)]
+    pub(crate) listen: crate::commands::studio::ListenArgument,
     #[command(flatten)]
     pub(crate) format: FormatArgument,
 }

@@ -14,6 +14,8 @@ use monas::replay::{
 use monas_tape::{Channel, RecordedSample, Recording, TapeOverview};
 
 use super::arguments::ReplayArguments;
+#[cfg(unix)]
+use crate::commands::studio;
 use crate::input::{self, chosen_hosts, run_of};
 use crate::terminal::{CommandFailure, CommandOutput, Exit, Format, WallClock, failed};
 
@@ -43,6 +45,12 @@ pub(crate) fn execute(
     console: &mut CommandOutput<'_>,
 ) -> Result<Exit, CommandFailure> {
     let format = arguments.format.value;
+    #[cfg(unix)]
+    if arguments.listen.is_given() && !arguments.studio {
+        return Err(CommandFailure::Usage("--listen is for the studio: add --studio".into()));
+    }
+    #[cfg(unix)]
+    arguments.listen.require_no_control()?;
     let recording = Recording::open(&arguments.file).map_err(failed(format))?;
     let overview = recording.overview().map_err(failed(format))?;
     let run = run_of(&overview).map_err(|message| CommandFailure::Failed(format, message))?;
@@ -50,7 +58,8 @@ pub(crate) fn execute(
     let hosts = chosen_hosts(&recording, &run, arguments.config.as_deref(), &arguments.agents, format)?;
     let replay =
         input::replay(hosts, &run, &overview).map_err(|error| CommandFailure::failed(format, error))?;
-    let outcome = play(&recording, &overview, replay, format)?;
+    let mut marks = DifferenceMarks::default();
+    let outcome = play(&recording, &overview, replay, &mut marks, format)?;
     report::write(console.out, format, &recording, &overview, &outcome)?;
     if outcome.compared() + outcome.differences() == 0 {
         return Err(CommandFailure::Failed(
@@ -58,7 +67,42 @@ pub(crate) fn execute(
             "nothing was compared: the agents have published nothing".into(),
         ));
     }
+    #[cfg(unix)]
+    if arguments.studio {
+        studio::view_replay(&arguments.file, marks.events(), &arguments.listen, format, console)?;
+    }
     Ok(if arguments.verify && outcome.differences() > 0 { Exit::Diverged } else { Exit::Success })
+}
+
+/// The differences that the timeline of the studio marks: the first of each agent and topic in each
+/// second.
+#[derive(Default)]
+struct DifferenceMarks {
+    by_second: BTreeMap<(u64, String, String, String), Timestamp>,
+}
+
+impl DifferenceMarks {
+    /// The most marks of a timeline.
+    const MOST: usize = 5_000;
+
+    fn note(&mut self, difference: &ReplayDifference) {
+        let ReplayDifference { host, agent, topic, time, .. } = difference;
+        let second = time.as_nanos() / 1_000_000_000;
+        let key = (second, host.clone(), agent.clone(), topic.clone());
+        if self.by_second.len() < DifferenceMarks::MOST || self.by_second.contains_key(&key) {
+            let first = self.by_second.entry(key).or_insert(*time);
+            *first = (*first).min(*time);
+        }
+    }
+
+    #[cfg(unix)]
+    fn events(self) -> Vec<(Timestamp, monas_studio::SceneEvent)> {
+        let event = |((_, host, agent, topic), time)| {
+            let text = format!("the replay of {host}/{agent} differs on {topic}");
+            (time, monas_studio::SceneEvent { kind: "difference".into(), text, lasts: false })
+        };
+        self.by_second.into_iter().map(event).collect()
+    }
 }
 
 /// Feeds the recording to the replay.
@@ -66,11 +110,13 @@ fn play(
     recording: &Recording,
     overview: &TapeOverview,
     mut replay: Replay,
+    marks: &mut DifferenceMarks,
     format: Format,
 ) -> Result<ReplayOutcome, CommandFailure> {
     let clock = WallClock::start();
     let mut first: Option<ReplayDifference> = None;
     let mut report_difference = |difference: ReplayDifference| {
+        marks.note(&difference);
         if first.as_ref().is_none_or(|first| difference.time < first.time) {
             first = Some(difference);
         }

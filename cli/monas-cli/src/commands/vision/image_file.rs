@@ -3,7 +3,7 @@
 use std::io::Cursor;
 use std::path::Path;
 
-use png::{BitDepth, ColorType, Transformations};
+use png::{ColorType, Transformations};
 use zune_jpeg::JpegDecoder;
 use zune_jpeg::zune_core::bytestream::ZCursor;
 use zune_jpeg::zune_core::colorspace::ColorSpace;
@@ -69,15 +69,7 @@ impl RgbImage {
 
     /// Writes a PNG.
     pub(super) fn write(&self, file: &Path) -> Result<(), String> {
-        let mut content = Vec::new();
-        let mut encoder = png::Encoder::new(&mut content, self.width as u32, self.height as u32);
-        encoder.set_color(ColorType::Rgb);
-        encoder.set_depth(BitDepth::Eight);
-        let written = encoder.write_header().and_then(|mut writer| {
-            writer.write_image_data(&self.bytes)?;
-            writer.finish()
-        });
-        written.map_err(|error| error.to_string())?;
+        let content = monas_scene::encode_png(self.width, self.height, &self.bytes)?;
         monas_files::write(file, &content).map_err(|error| error.to_string())
     }
 }

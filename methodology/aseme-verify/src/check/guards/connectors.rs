@@ -7,11 +7,13 @@ use yase::{Diagnostic, NodeId, NodeKind, Severity, TransitionId};
 use super::GuardCheck;
 use crate::logic::{Claim, Satisfiability};
 
-/// Limits on the segments of a path through connectors, and on the number of paths.
+/// Limit on the segments of a path through connectors.
 const LONGEST: usize = 16;
+
+/// Limit on the nodes from which a path must continue.
 const MOST: usize = 256;
 
-/// Limit on the paths out of one node that are compared; contradictions beyond it are not found.
+/// Limit on the paths out of one node that are compared; beyond it the check says so.
 const COMPARED: usize = 4096;
 
 impl GuardCheck<'_> {
@@ -64,7 +66,12 @@ impl GuardCheck<'_> {
         let leads_on = |&id: &TransitionId| self.is_static(self.subject.transition(id).target);
         let segments = self.subject.outgoing(node).iter().copied();
         let mut open: Vec<Vec<TransitionId>> = segments.filter(leads_on).map(|id| vec![id]).collect();
-        while let Some(way) = open.pop().filter(|_| looked < COMPARED) {
+        let mut is_cut = false;
+        while let Some(way) = open.pop() {
+            if looked == COMPARED {
+                is_cut = true;
+                break;
+            }
             looked += 1;
             let Some(&last) = way.last() else { continue };
             let target = self.subject.transition(last).target;
@@ -72,15 +79,31 @@ impl GuardCheck<'_> {
                 found.push(self.dead_way(&way));
                 continue;
             }
-            if self.is_static(target) && way.len() < LONGEST && looked < MOST {
-                // a last segment without a guard contradicts nothing, nor does the only guard
-                let is_guarded = way.iter().any(|&id| self.guard(id).is_some());
-                let matters = |id: &TransitionId| is_guarded && self.guard(*id).is_some() || leads_on(id);
-                let segments = self.subject.outgoing(target).iter().copied().filter(matters);
-                open.extend(segments.take(COMPARED).map(|id| [way.as_slice(), &[id]].concat()));
+            if !self.is_static(target) {
+                continue;
             }
+            // a last segment without a guard contradicts nothing, nor does the only guard
+            let is_guarded = way.iter().any(|&id| self.guard(id).is_some());
+            let matters = |id: &TransitionId| is_guarded && self.guard(*id).is_some() || leads_on(id);
+            let mut segments = self.subject.outgoing(target).iter().copied().filter(matters);
+            if way.len() < LONGEST && looked < COMPARED {
+                let left = COMPARED - looked;
+                open.extend(segments.by_ref().take(left).map(|id| [way.as_slice(), &[id]].concat()));
+            }
+            is_cut |= segments.next().is_some();
         }
+        found.extend(is_cut.then(|| self.not_compared(node)));
         found
+    }
+
+    fn not_compared(&self, node: NodeId) -> Diagnostic {
+        let message = format!(
+            "not all paths through connectors out of `{}` are compared: contradictions beyond {COMPARED} paths or {LONGEST} segments are not found",
+            self.subject.path(node)
+        );
+        let found = Diagnostic::warning("M06", self.subject.places.node(node), message);
+        let hint = "make a CHOICE of a connector on the way: paths end there";
+        Diagnostic { severity: Severity::Information, ..found }.with_hint(hint)
     }
 
     fn is_static(&self, node: NodeId) -> bool {

@@ -2,6 +2,7 @@ import { addDecision, type Decision, mainRegion } from './decisions';
 import { lineage } from './picture';
 import type {
   AgentRow,
+  CameraNews,
   ChartNews,
   ChartStep,
   Explanation,
@@ -71,6 +72,8 @@ export class StudioClient {
   scene = $state.raw<SceneNews | null>(null);
   actions = $state.raw<SceneAction[]>([]);
   sample = $state.raw<Sample | null>(null);
+  /** What the cameras of the chosen robot see. */
+  camera = $state.raw<CameraNews | null>(null);
   /** The speed of simulated time, null if it is unlimited; undefined if it is not set here. */
   pace = $state.raw<number | null | undefined>(undefined);
   tape = $state.raw<TapeFacts | null>(null);
@@ -90,6 +93,7 @@ export class StudioClient {
   #socket: WebSocket | null = null;
   #retry = FIRST_RETRY;
   #watched: { host: string; topic: string } | null = null;
+  #cameraHost: string | null = null;
   /** The drawings that were asked for, by chart. */
   #asked = new Map<string, number>();
   #tableTime = 0;
@@ -107,6 +111,9 @@ export class StudioClient {
       this.#asked.clear();
       if (this.#watched) {
         this.#send({ type: 'watch', ...this.#watched });
+      }
+      if (this.#cameraHost) {
+        this.#send({ type: 'camera', host: this.#cameraHost });
       }
     };
     socket.onmessage = (event) => this.#take(JSON.parse(String(event.data)) as ServerMessage);
@@ -134,6 +141,13 @@ export class StudioClient {
     this.#watched = null;
     this.sample = null;
     this.#send({ type: 'unwatch' });
+  }
+
+  /** Gets the images of a robot from now on; of none without one. */
+  watchCamera(host: string | null): void {
+    this.#cameraHost = host;
+    this.camera = null;
+    this.#send({ type: 'camera', host });
   }
 
   setPace(factor: number): void {
@@ -312,6 +326,9 @@ export class StudioClient {
     if (frame.sample) {
       this.sample = frame.sample;
     }
+    if (frame.camera) {
+      this.camera = frame.camera;
+    }
     if (frame.beside) {
       if (!this.beside) {
         this.beside = new StudioClient();
@@ -323,6 +340,7 @@ export class StudioClient {
 
   /** Forgets what belongs to another moment; shapes stay. */
   #goElsewhere(): void {
+    this.camera = null;
     const charts = new Map<string, ChartState>();
     for (const [key, chart] of this.charts) {
       charts.set(key, { ...chart, steps: [], enteredBy: new Map(), decisions: [] });

@@ -9,6 +9,8 @@ export interface RunFacts {
   simulated: boolean;
   hosts: string[];
   scene: boolean;
+  /** The topic with the images of cameras, if the program reads it. */
+  camera_topic: string | null;
   /** Whether pages may change the run. */
   control?: boolean;
 }
@@ -254,6 +256,13 @@ export interface Explanation {
   segments: { source: string; target: string; text: string; reads: ReadValue[] }[];
 }
 
+/** What the cameras of a robot see. */
+export interface CameraNews {
+  host: string;
+  t: number;
+  images: { name: string; url: string }[];
+}
+
 export interface TapeFacts {
   begin: number;
   end: number;
@@ -275,6 +284,7 @@ export interface Frame {
   charts?: ChartNews[];
   scene?: SceneNews;
   sample?: Sample;
+  camera?: CameraNews;
   /** The moment is not a later one: what came since holds no more. */
   elsewhere?: boolean;
   tape?: TapeFacts;

@@ -1,6 +1,7 @@
 //! Coverage counters of one chart.
 
 use std::cmp::Reverse;
+use std::collections::BTreeMap;
 use std::fmt;
 
 use aseme_verify::DiagnosticNames;
@@ -20,10 +21,8 @@ pub(crate) struct ChartCounts {
     pub(crate) entered: Vec<u64>,
     /// How often each transition fired.
     pub(crate) fired: Vec<u64>,
-    /// How often each guard was false.
-    refused: Vec<u64>,
-    /// For each transition, the guards that are tried before it and are false if it fires.
-    earlier: Vec<Vec<TransitionId>>,
+    /// The transitions of each source that are tried one after another, in that order.
+    tried: Vec<Vec<TransitionId>>,
 }
 
 /// A share of a total.
@@ -57,8 +56,7 @@ impl ChartCounts {
             players: Vec::new(),
             entered: vec![0; nodes],
             fired: vec![0; transitions],
-            refused: vec![0; transitions],
-            earlier: earlier(chart),
+            tried: tried(chart),
         }
     }
 
@@ -88,11 +86,7 @@ impl ChartCounts {
         }
         for &transition in record.selected.iter().chain(&record.taken) {
             match self.fired.get_mut(transition as usize) {
-                Some(fired) => {
-                    *fired += 1;
-                    let earlier = &self.earlier[transition as usize];
-                    earlier.iter().for_each(|guard| self.refused[guard.0 as usize] += 1);
-                }
+                Some(fired) => *fired += 1,
                 None => is_known = false,
             }
         }
@@ -112,9 +106,21 @@ impl ChartCounts {
         self.meant().filter(|(_, transition)| transition.expression.guard.is_some()).map(|(id, _)| id)
     }
 
-    /// The guards with an alternative that is tried after them.
-    fn refusable(&self) -> impl Iterator<Item = TransitionId> + '_ {
-        self.guarded().filter(|guard| self.earlier.iter().any(|earlier| earlier.contains(guard)))
+    /// The guards with an alternative that is tried after them, and how often each was false: as
+    /// often as one of these fired.
+    fn refused(&self) -> BTreeMap<TransitionId, u64> {
+        let mut refused = BTreeMap::new();
+        for tried in &self.tried {
+            let mut later = 0;
+            for (place, &id) in tried.iter().rev().enumerate() {
+                let expression = &self.chart.transition(id).expression;
+                if place > 0 && expression.guard.is_some() && !expression.is_never() {
+                    refused.insert(id, later);
+                }
+                later += self.fired[id.0 as usize];
+            }
+        }
+        refused
     }
 
     pub(crate) fn states(&self) -> Fraction {
@@ -130,7 +136,7 @@ impl ChartCounts {
     }
 
     pub(crate) fn guards_refused(&self) -> Fraction {
-        share(self.refusable().map(|id| self.refused[id.0 as usize]))
+        share(self.refused().into_values())
     }
 
     /// All elements that were not covered: states, transitions, guards.
@@ -149,7 +155,8 @@ impl ChartCounts {
             UncoveredElement { what, name: name + &colon, path: path + &colon, transition }
         };
         let unfired = self.meant().map(|(id, _)| id).filter(|id| self.fired[id.0 as usize] == 0);
-        let unrefused = self.refusable().filter(|id| self.refused[id.0 as usize] == 0);
+        let refused = self.refused();
+        let unrefused = refused.into_iter().filter(|(_, count)| *count == 0).map(|(id, _)| id);
         let transitions = unfired.map(|id| missed(NEVER_FIRED, id));
         states.chain(transitions).chain(unrefused.map(|id| missed(ALWAYS_HELD, id))).collect()
     }
@@ -162,26 +169,22 @@ fn share(counts: impl Iterator<Item = u64>) -> Fraction {
     })
 }
 
-/// For each transition, the guards that are tried before it under the same conditions: same source,
-/// no trigger, no weights.
-fn earlier(chart: &Statechart) -> Vec<Vec<TransitionId>> {
-    let rank = |id: TransitionId| {
-        let transition = chart.transition(id);
-        (Reverse(transition.priority), transition.expression.guard.is_none(), id)
-    };
-    let before = |(id, later): (TransitionId, &Transition)| {
-        let is_tried = |(other, transition): &(TransitionId, &Transition)| {
-            transition.source == later.source
-                && transition.expression.guard.is_some()
-                && transition.weight.is_none()
-                && later.weight.is_none()
-                && transition.expression.trigger.is_none()
-                && later.expression.trigger.is_none()
-                && rank(*other) < rank(id)
-        };
-        chart.transitions().filter(is_tried).map(|(other, _)| other).collect()
-    };
-    chart.transitions().map(before).collect()
+/// The transitions of each source that are tried one after another under the same conditions: no
+/// trigger, no weights.
+fn tried(chart: &Statechart) -> Vec<Vec<TransitionId>> {
+    let mut tried = vec![Vec::new(); chart.nodes().len()];
+    for (id, transition) in chart.transitions() {
+        if transition.weight.is_none() && transition.expression.trigger.is_none() {
+            tried[transition.source.0 as usize].push(id);
+        }
+    }
+    for of_source in &mut tried {
+        of_source.sort_by_key(|&id| {
+            let transition = chart.transition(id);
+            (Reverse(transition.priority), transition.expression.guard.is_none(), id)
+        });
+    }
+    tried
 }
 
 #[cfg(test)]

@@ -6,11 +6,13 @@ use std::f64::consts::PI;
 use monas_robot::{Posture, Sensors};
 use monas_sim::messages::Incident;
 use monas_studio::{
-    Banner, Belief, Body, Ground, GroundMark, Scene, SceneAction, SceneEvent, SceneMessages, SceneObject,
-    ScenePicture,
+    Banner, Belief, Body, Cameras, Ground, GroundMark, Scene, SceneAction, SceneEvent, SceneMessages,
+    SceneObject, ScenePicture,
 };
 use prost::Message;
 use serde_json::{Value, json};
+
+use crate::robot_cameras::RobotCameras;
 
 const TRUTH: &str = "sim/truth";
 const SCORE: &str = "sim/score";
@@ -30,7 +32,8 @@ const GOAL_DEPTH: f64 = 0.4;
 
 /// Draws the ground truth of the simulated field if there is one, what each robot believes, and the
 /// score.
-pub(super) struct SoccerField;
+#[derive(Clone, Copy, Debug, Default)]
+pub struct SoccerField;
 
 impl Scene for SoccerField {
     fn topics(&self) -> &[&'static str] {
@@ -50,6 +53,10 @@ impl Scene for SoccerField {
         let text = Incident::decode(bytes).ok()?.text;
         let kind = text.split([' ', ':']).next().unwrap_or_default().to_owned();
         Some(SceneEvent { kind, text, lasts: false })
+    }
+
+    fn cameras(&self) -> Option<&dyn Cameras> {
+        Some(&RobotCameras)
     }
 
     fn draw(&self, messages: &SceneMessages<'_>) -> ScenePicture {
