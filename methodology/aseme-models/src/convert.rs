@@ -29,6 +29,7 @@ use aseme::srm::SrmFile;
 
 pub(crate) use chart::chart_of;
 pub use read::read;
+pub(crate) use read::{KINDS, first_word};
 pub use write::WrittenModel;
 
 /// A model of any kind.

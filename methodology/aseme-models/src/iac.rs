@@ -48,8 +48,10 @@ use yase::statechart::{Constant, Frame, Point};
 
 use aseme::names::decode;
 
-pub(crate) use from_text::from_text;
+pub(crate) use chart::KINDS;
+pub(crate) use from_text::{NODE_KEYS, TransitionLine, from_text, node_setting, transition_line};
 pub(crate) use from_xmi::from_xmi;
+pub(crate) use path::{NodePaths, name_of, name_text};
 pub(crate) use to_text::to_text;
 
 /// A statechart as written in a model file.

@@ -13,7 +13,8 @@
 //! kind and format of a file, reads it, and writes it in another format with a list of what that
 //! format cannot represent. [`transformations`] derives one model from another, from goals to
 //! charts. [`diff`] compares two statecharts, [`regenerate`] carries refinements over to a
-//! regenerated chart, and [`ontology`] lists the messages that a chart uses.
+//! regenerated chart, and [`ontology`] lists the messages that a chart uses. [`edit`] makes edits
+//! of a model as few replacements of its text.
 //!
 //! An [`Iac`] keeps a model file as it is written, faults included, so that reading a file never
 //! changes it; a [`Statechart`] is its meaning. Models are data, and all functions here take text
@@ -40,6 +41,7 @@ pub mod diagram;
 pub mod diff;
 mod document;
 mod drawing;
+pub mod edit;
 pub mod functionality;
 pub mod iac;
 mod meta;

@@ -45,6 +45,7 @@
 mod constants;
 mod entries;
 mod layout;
+mod parts;
 mod sections;
 mod states;
 mod xmi;
@@ -58,6 +59,7 @@ use crate::path::Path;
 use crate::text;
 
 pub use constants::constant_value;
+pub use parts::TransitionParts;
 pub use sections::Section;
 pub use states::{duration, events};
 

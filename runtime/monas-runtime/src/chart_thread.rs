@@ -329,9 +329,12 @@ impl ChartThread {
         let now = self.driver.read_clock();
         self.driver.recorder.record_update(now, &update, self.runner.place());
         if let Some((_, swap)) = update.swap {
+            let is_dry_run = swap.is_dry_run;
             notes = self.runner.swap(*swap, now)?;
-            self.driver.free_loop = FreeLoop::default();
-            self.follow_guards();
+            if !is_dry_run {
+                self.driver.free_loop = FreeLoop::default();
+                self.follow_guards();
+            }
         }
         update.instances.into_iter().for_each(|(_, instances)| self.runner.replace_instances(instances, now));
         for runner in update.charts {

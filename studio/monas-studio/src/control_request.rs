@@ -64,6 +64,7 @@ enum AgentAction {
         chart: Option<String>,
         states: Option<Map<String, Value>>,
         lossy: Option<bool>,
+        dry_run: Option<bool>,
     },
     Raise {
         event: String,
@@ -155,12 +156,13 @@ impl AgentAction {
                 let chart = chart.unwrap_or_default();
                 Change { settings: settings(Some(given))?, chart, ..is(Action::Set) }
             }
-            AgentAction::Swap { file, text, chart, states, lossy } => Change {
+            AgentAction::Swap { file, text, chart, states, lossy, dry_run } => Change {
                 file,
                 text: text.unwrap_or_default(),
                 chart: chart.unwrap_or_default(),
                 states: settings(states)?,
                 accept_losses: lossy.unwrap_or_default(),
+                dry_run: dry_run.unwrap_or_default(),
                 ..is(Action::SwapModel)
             },
             AgentAction::Raise { event, chart } => {

@@ -19,6 +19,10 @@
 //!   protocol get the topics of a run under the same rules; origins of such can be allowed.
 //! - **The server refuses, not the page.** Requests that change a run are a type of their own, read
 //!   strictly, and refused in one place.
+//! - **Edits are edits of text.** Models can be edited that the program lists in a
+//!   [`ModelWorkspace`]; what a page does in a drawing becomes replacements in the text of the
+//!   file. What models mean is a [`ModelLanguage`]; that of the method is
+//!   [`AsemeLanguage`], to which the program gives its names.
 //! - **The drawing comes from the run.** Shapes are those of [`yase_export::to_picture`], the same
 //!   layout as in drawings of models. The page only draws them.
 //!
@@ -36,6 +40,7 @@
 //! ```
 
 mod access;
+mod aseme_language;
 mod asset;
 mod base64;
 mod cameras;
@@ -63,6 +68,10 @@ mod live_session;
 mod live_state;
 mod message_chain;
 mod message_decoder;
+mod model_request;
+mod model_session;
+mod model_workspace;
+mod models_only;
 mod pace;
 mod read_value;
 #[cfg(unix)]
@@ -83,18 +92,20 @@ mod tape_moment;
 mod tape_pair;
 mod tape_run;
 mod tape_session;
+mod text_positions;
 mod time;
 mod transition_explanation;
 mod viewer;
 mod viewer_request;
 mod why;
 
+pub use aseme_language::AsemeLanguage;
 pub use cameras::Cameras;
 pub use error::{Error, ErrorKind};
 pub use guard_atom::GuardAtom;
 pub use message_chain::{ChainLink, MessageChain};
 pub use message_decoder::message_json;
-
+pub use model_workspace::{ModelLanguage, ModelWorkspace};
 pub use pace::Pace;
 pub use read_value::ReadValue;
 pub use scene::{

@@ -113,7 +113,9 @@ impl Session for LiveSession {
                 None
             }
             ViewerRequest::Control(id, request) => Some(self.control(id, request)),
-            ViewerRequest::Why { .. } | ViewerRequest::WhyTransition { .. } => None,
+            ViewerRequest::Why { .. } | ViewerRequest::WhyTransition { .. } | ViewerRequest::Model(..) => {
+                None
+            }
         }
     }
 

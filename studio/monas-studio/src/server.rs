@@ -20,6 +20,9 @@ use crate::foxglove;
 use crate::http_request::HttpRequest;
 #[cfg(unix)]
 use crate::live_run::LiveRun;
+use crate::model_session::ModelSession;
+use crate::model_workspace::ModelWorkspace;
+use crate::models_only::ModelsOnly;
 use crate::pace::Pace;
 use crate::scene::Scene;
 use crate::source::Source;
@@ -75,6 +78,9 @@ pub struct StudioSettings {
     pub origins: Vec<String>,
     /// Whether viewers may change the run: its agents and models, messages, and events.
     pub allows_control: bool,
+    /// The models that viewers may edit. Their files are written for pages on this computer, and
+    /// for others only with [`allows_control`](StudioSettings::allows_control).
+    pub models: Option<Arc<ModelWorkspace>>,
 }
 
 /// A running studio; dropping it ends it.
@@ -90,6 +96,9 @@ struct ServerState {
     #[cfg_attr(not(unix), allow(dead_code, reason = "only runs of Unix are served to others"))]
     origins: Vec<String>,
     source: Box<dyn Source>,
+    models: Option<Arc<ModelWorkspace>>,
+    /// Whether files of models may be written.
+    may_write: bool,
     is_over: AtomicBool,
     connections: AtomicUsize,
     viewers: AtomicUsize,
@@ -103,8 +112,8 @@ impl Studio {
     /// The address is not available.
     #[cfg(unix)]
     pub fn of_run(socket: &Path, settings: StudioSettings) -> Result<Studio, Error> {
-        let StudioSettings { listen, scene, pace, origins, allows_control } = settings;
-        Studio::serve(listen, origins, Box::new(LiveRun::new(socket, scene, pace, allows_control)?))
+        let StudioSettings { scene, pace, allows_control, .. } = settings.clone();
+        Studio::serve(settings, Box::new(LiveRun::new(socket, scene, pace, allows_control)?))
     }
 
     /// Serves a tape.
@@ -112,7 +121,7 @@ impl Studio {
     /// # Errors
     /// The address is not available.
     pub fn of_tape(tape: TapeRun, settings: StudioSettings) -> Result<Studio, Error> {
-        Studio::serve(settings.listen, settings.origins, Box::new(tape))
+        Studio::serve(settings, Box::new(tape))
     }
 
     /// Serves a tape with another one beside it, on the timeline of the first.
@@ -120,14 +129,19 @@ impl Studio {
     /// # Errors
     /// The address is not available.
     pub fn of_tapes(tape: TapeRun, other: TapeRun, settings: StudioSettings) -> Result<Studio, Error> {
-        Studio::serve(settings.listen, settings.origins, Box::new(TapePair::new(tape, other)))
+        Studio::serve(settings, Box::new(TapePair::new(tape, other)))
     }
 
-    fn serve(
-        listen: Option<ListenAddress>,
-        origins: Vec<String>,
-        source: Box<dyn Source>,
-    ) -> Result<Studio, Error> {
+    /// Serves the models of the settings, without a run.
+    ///
+    /// # Errors
+    /// The address is not available.
+    pub fn of_models(settings: StudioSettings) -> Result<Studio, Error> {
+        Studio::serve(settings, Box::new(ModelsOnly))
+    }
+
+    fn serve(settings: StudioSettings, source: Box<dyn Source>) -> Result<Studio, Error> {
+        let StudioSettings { listen, origins, allows_control, models, .. } = settings;
         let failed = |error: io::Error| Error::new(ErrorKind::Address, error);
         let listener = match listen {
             Some(ListenAddress(address)) => TcpListener::bind(address).map_err(|error| {
@@ -139,8 +153,10 @@ impl Studio {
         let access = AccessPolicy::for_address(address)?;
         let url = access.url();
         let (connections, viewers) = Default::default();
-        let state =
-            Arc::new(ServerState { access, origins, source, is_over: false.into(), connections, viewers });
+        let may_write = allows_control || address.ip().is_loopback();
+        let is_over = false.into();
+        let state = ServerState { access, origins, source, models, may_write, is_over, connections, viewers };
+        let state = Arc::new(state);
         let server = state.clone();
         let thread = thread::Builder::new().name("studio".into()).spawn(move || accept(&listener, &server));
         let thread = thread.map_err(|error| Error::new(ErrorKind::System, error))?;
@@ -312,8 +328,9 @@ impl ServerState {
             foxglove::serve(stream, &run, &self.is_over);
             return Ok(());
         }
-        let limit = viewer::request_limit(self.source.allows_control());
-        viewer::serve(stream, self.source.open(), limit, &self.is_over);
+        let models = self.models.clone().map(|models| ModelSession::new(models, self.may_write));
+        let limit = viewer::request_limit(self.source.allows_control() || models.is_some());
+        viewer::serve(stream, self.source.open(), models, limit, &self.is_over);
         Ok(())
     }
 }

@@ -189,7 +189,7 @@ impl Session for TapeSession {
                 self.camera = host.map(ChosenCamera::new);
                 self.sent_images = None;
             }
-            ViewerRequest::Live => {}
+            ViewerRequest::Live | ViewerRequest::Model(..) => {}
             ViewerRequest::Control(id, _) => {
                 let reason = "a tape cannot be changed";
                 return Some(json!({"type": "reply", "id": id, "done": false, "reason": reason}));

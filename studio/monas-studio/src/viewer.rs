@@ -5,11 +5,12 @@ use std::net::TcpStream;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-use serde_json::Value;
+use serde_json::{Value, json};
 use tungstenite::protocol::frame::coding::CloseCode;
 use tungstenite::protocol::{CloseFrame, Role, WebSocketConfig};
 use tungstenite::{Message, WebSocket};
 
+use crate::model_session::ModelSession;
 use crate::source::Session;
 use crate::time::now;
 use crate::viewer_request::ViewerRequest;
@@ -24,28 +25,35 @@ const SLOWEST: Duration = Duration::from_secs(5);
 /// slow, and one that has frozen must not hold up the end of a run for longer.
 const FAREWELL: Duration = Duration::from_secs(2);
 
-/// The longest request of a page, in bytes; of one that may change the run, which sends models.
+/// The longest request of a page, in bytes; of one that may change the run or edit models.
 const REQUEST_LIMIT: usize = 16 << 10;
 const CONTROL_LIMIT: usize = 1 << 20;
 
 /// The most requests that are handled between two frames.
 const REQUESTS: usize = 32;
 
-/// The longest request of a page, in bytes.
-pub(crate) fn request_limit(allows_control: bool) -> usize {
-    if allows_control { CONTROL_LIMIT } else { REQUEST_LIMIT }
+/// The longest request of a page that may send texts, or not, in bytes.
+pub(crate) fn request_limit(sends_texts: bool) -> usize {
+    if sends_texts { CONTROL_LIMIT } else { REQUEST_LIMIT }
 }
 
 /// Serves a page until it leaves, is too slow, sends a request of more than `limit` bytes, or the
 /// studio ends.
-pub(crate) fn serve(stream: TcpStream, mut session: Box<dyn Session>, limit: usize, is_over: &AtomicBool) {
+pub(crate) fn serve(
+    stream: TcpStream,
+    mut session: Box<dyn Session>,
+    models: Option<ModelSession>,
+    limit: usize,
+    is_over: &AtomicBool,
+) {
     // A page that has left needs no report.
-    let _ = exchange(stream, &mut *session, limit, is_over);
+    let _ = exchange(stream, &mut *session, models, limit, is_over);
 }
 
 fn exchange(
     stream: TcpStream,
     session: &mut dyn Session,
+    mut models: Option<ModelSession>,
     limit: usize,
     is_over: &AtomicBool,
 ) -> tungstenite::Result<()> {
@@ -53,19 +61,34 @@ fn exchange(
     stream.set_write_timeout(Some(SLOWEST))?;
     let limits = WebSocketConfig::default().max_message_size(Some(limit)).max_frame_size(Some(limit));
     let mut socket = WebSocket::from_raw_socket(stream, Role::Server, Some(limits));
+    if let Some(models) = &models {
+        send(&mut socket, &models.greeting())?;
+    }
     let mut last = now();
     let mut due = last;
     while !is_over.load(Ordering::SeqCst) {
         for _ in 0..REQUESTS {
             let left = due.saturating_duration_since(now());
             let Some(request) = next_request(&mut socket, left)? else { break };
-            if let Some(reply) = ViewerRequest::parse(&request).and_then(|request| session.handle(request)) {
+            let reply = match (ViewerRequest::parse(&request), &mut models) {
+                (Some(ViewerRequest::Model(id, request)), Some(models)) => models.handle(id, request),
+                (Some(ViewerRequest::Model(id, _)), None) => {
+                    let reason = "the studio was started without --edit";
+                    Some(json!({"type": "reply", "id": id, "done": false, "reason": reason}))
+                }
+                (Some(request), _) => session.handle(request),
+                (None, _) => None,
+            };
+            if let Some(reply) = reply {
                 send(&mut socket, &reply)?;
             }
         }
         let time = now();
         if time < due {
             continue;
+        }
+        if let Some(reply) = models.as_mut().and_then(ModelSession::checked) {
+            send(&mut socket, &reply)?;
         }
         let frame = session.frame(time - last);
         (last, due) = (time, time + FRAME);

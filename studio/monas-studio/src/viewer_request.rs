@@ -3,8 +3,10 @@
 use serde_json::Value;
 
 use crate::control_request::ControlRequest;
+use crate::model_request::ModelRequest;
 
-/// A request of a page. Only [`Control`](ViewerRequest::Control) changes what a run does.
+/// A request of a page. Only [`Control`](ViewerRequest::Control) changes what a run does, and only
+/// [`Model`](ViewerRequest::Model) writes files.
 #[derive(Clone, PartialEq, Debug)]
 pub(crate) enum ViewerRequest {
     /// The shapes of a chart; of the tape beside, if it is one of that.
@@ -32,6 +34,8 @@ pub(crate) enum ViewerRequest {
     /// A change of the run, or why the request for it cannot be read; with the number of the
     /// request.
     Control(Option<u64>, Result<ControlRequest, String>),
+    /// A request about models, or why it cannot be read; with its number.
+    Model(Option<u64>, Result<ModelRequest, String>),
 }
 
 impl ViewerRequest {
@@ -65,6 +69,10 @@ impl ViewerRequest {
             name if ControlRequest::is_type(name) => {
                 let (id, request) = ControlRequest::read(value);
                 Some(ViewerRequest::Control(id, request))
+            }
+            name if ModelRequest::is_type(name) => {
+                let (id, request) = ModelRequest::read(value);
+                Some(ViewerRequest::Model(id, request))
             }
             _ => None,
         }

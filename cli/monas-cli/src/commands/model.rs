@@ -12,7 +12,7 @@ mod finding;
 mod model_format;
 mod mutate;
 mod ontology;
-mod program;
+pub(crate) mod program;
 mod regenerate;
 mod robot_file;
 mod run;

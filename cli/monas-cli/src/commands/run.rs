@@ -132,7 +132,7 @@ pub(crate) fn execute(
     #[cfg(unix)]
     if arguments.listen.is_given() && !arguments.studio {
         return Err(CommandFailure::Usage(
-            "--listen, --allow-origin and --allow-control are for the studio: add --studio".into(),
+            "--listen, --allow-origin, --allow-control and --edit are for the studio: add --studio".into(),
         ));
     }
     #[cfg(feature = "soccer")]

@@ -6,10 +6,13 @@ use std::time::Duration;
 
 use clap::{Args, ValueHint};
 use clap_complete::engine::ArgValueCandidates;
-use monas::Timestamp;
-use monas_studio::{ListenAddress, Pace, Scene, SceneEvent, Studio, StudioSettings, TapeRun};
+use monas::{Registry, Timestamp};
+use monas_studio::{
+    AsemeLanguage, ListenAddress, ModelWorkspace, Pace, Scene, SceneEvent, Studio, StudioSettings, TapeRun,
+};
 use monas_tape::Recording;
 
+use super::model::program;
 use crate::input::recorded_charts;
 use crate::remote::{RunSelector, connection, runs};
 use crate::terminal::{
@@ -50,11 +53,28 @@ pub(crate) struct ListenArgument {
     /// only look.
     #[arg(long)]
     allow_control: bool,
+    /// Let pages edit this model, or the models in this folder: as text, in the drawing of its
+    /// chart, and in forms. May be given several times. Pages of other computers can save only with
+    /// --allow-control.
+    #[arg(long = "edit", value_name = "PATH", value_hint = ValueHint::AnyPath)]
+    models: Vec<PathBuf>,
 }
 
 impl ListenArgument {
+    fn settings(&self, format: Format) -> Result<StudioSettings, CommandFailure> {
+        let ListenArgument { listen, origins, allow_control, models } = self.clone();
+        let models = (!models.is_empty()).then(|| workspace(&models, format)).transpose()?;
+        Ok(StudioSettings {
+            listen,
+            origins,
+            allows_control: allow_control,
+            models,
+            ..StudioSettings::default()
+        })
+    }
+
     pub(crate) fn is_given(&self) -> bool {
-        self.listen.is_some() || !self.origins.is_empty() || self.allow_control
+        self.listen.is_some() || !self.origins.is_empty() || self.allow_control || !self.models.is_empty()
     }
 
     /// For the studio of a tape.
@@ -65,6 +85,13 @@ impl ListenArgument {
             }
             false => Ok(()),
         }
+    }
+}
+
+impl StudioArguments {
+    /// Whether models are edited and no run is asked for.
+    fn is_without_run(&self) -> bool {
+        !self.listen.models.is_empty() && self.run.is_none() && !self.listen.allow_control
     }
 }
 
@@ -81,6 +108,7 @@ pub(crate) fn execute(
             let tape = open_tape(tape, format, console)?;
             serve_tape(tape, arguments.beside.as_deref(), &arguments.listen, format, console)?
         }
+        None if arguments.is_without_run() => serve_models(&arguments.listen, format, console)?,
         None => {
             let selector = RunSelector::of(arguments.run.clone(), None, arguments.format);
             serve(&connection::socket(&selector)?, &arguments.listen, None, format, console)?
@@ -99,10 +127,26 @@ pub(crate) fn serve(
     format: Format,
     console: &mut CommandOutput<'_>,
 ) -> Result<Studio, CommandFailure> {
-    let ListenArgument { listen, origins, allow_control } = listen.clone();
-    let settings = StudioSettings { listen, scene: scene(), pace, origins, allows_control: allow_control };
+    let settings = StudioSettings { scene: scene(), pace, ..listen.settings(format)? };
     let studio = Studio::of_run(socket, settings).map_err(|error| CommandFailure::failed(format, error))?;
     announce(studio, console)
+}
+
+/// The models at paths, with the names of this program.
+fn workspace(paths: &[PathBuf], format: Format) -> Result<Arc<ModelWorkspace>, CommandFailure> {
+    let functionality = |name: &str| program::functionality(&Registry::linked(), name);
+    let language = AsemeLanguage::new(program::linked()?, functionality);
+    ModelWorkspace::new(paths, Arc::new(language)).map(Arc::new).map_err(failed(format))
+}
+
+/// Serves models without a run.
+fn serve_models(
+    listen: &ListenArgument,
+    format: Format,
+    console: &mut CommandOutput<'_>,
+) -> Result<Studio, CommandFailure> {
+    let studio = Studio::of_models(listen.settings(format)?);
+    announce(studio.map_err(|error| CommandFailure::failed(format, error))?, console)
 }
 
 fn announce(studio: Studio, console: &mut CommandOutput<'_>) -> Result<Studio, CommandFailure> {
@@ -135,7 +179,7 @@ fn serve_tape(
     format: Format,
     console: &mut CommandOutput<'_>,
 ) -> Result<Studio, CommandFailure> {
-    let settings = StudioSettings { listen: listen.listen, ..StudioSettings::default() };
+    let settings = listen.settings(format)?;
     let studio = match beside {
         None => Studio::of_tape(tape, settings),
         Some(other) => Studio::of_tapes(tape, open_tape(other, format, console)?, settings),

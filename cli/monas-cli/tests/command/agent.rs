@@ -45,7 +45,11 @@ fn a_session_with_a_run_in_real_time() {
     done(&["stop", "Mind"]);
     done(&["start", "Mind"]);
     let model = root().join("models/goalie.srm").display().to_string();
-    assert!(done(&["swap", "Mind", &model]).contains("changed"));
+    let before = done(&["list", "Mind", "--format", "json"]);
+    assert!(done(&["swap", "Mind", &model, "--dry-run"]).contains("could be changed"));
+    let charts = |list: &str| objects(list)[0]["charts"].clone();
+    assert_eq!(charts(&done(&["list", "Mind", "--format", "json"])), charts(&before));
+    assert!(done(&["swap", "Mind", &model]).contains("is changed"));
 
     let lights = objects(&done(&["list", "Lights", "--format", "json"]));
     let names: Vec<&Value> =
@@ -73,6 +77,8 @@ fn a_swap_that_is_refused_says_how_states_are_mapped_and_a_signal_is_reported_in
     assert_eq!(answer.code, Some(1), "{}", answer.err);
     assert!(answer.err.contains("E0356") && answer.err.contains("--state OLD=NEW"), "{}", answer.err);
     assert_eq!(answer.err.matches("--state").count(), 1, "{}", answer.err);
+    let dry = ask(folder.path(), &["agent", "swap", "Mind", &other, "--dry-run"]);
+    assert_eq!((dry.code, &dry.err), (answer.code, &answer.err), "a dry run gives the same reasons");
     assert_eq!(run.terminate().code, Some(143));
 }
 

@@ -23,6 +23,17 @@ fn a_studio_prints_its_address_and_changes_no_result() {
 }
 
 #[test]
+fn models_to_edit_are_files_that_exist_and_need_a_studio() {
+    let none = monas(&["studio", "--edit", "nowhere.srm"]);
+    assert!(none.code == Some(1) && none.err.contains("nowhere.srm"), "{}", none.err);
+    let folder = tempfile::tempdir().expect("a folder");
+    let empty = monas(&["studio", "--edit", folder.path().to_str().expect("a path in UTF-8")]);
+    assert!(empty.code == Some(1) && empty.err.contains("no model to edit"), "{}", empty.err);
+    let run = monas(&["run", "config/match.xml", "--edit", "models"]);
+    assert!(run.code == Some(2) && run.err.contains("add --studio"), "{}", run.err);
+}
+
+#[test]
 fn why_names_the_transitions_and_the_messages_that_their_conditions_read() {
     let folder = tempfile::tempdir().expect("a folder");
     let tape = folder.path().join("match.mcap");

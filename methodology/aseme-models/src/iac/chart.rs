@@ -9,7 +9,7 @@ use aseme::names::{decode, encode};
 use aseme::srm::events;
 
 /// The kinds of nodes.
-const KINDS: [NodeKind; 15] = [
+pub(crate) const KINDS: [NodeKind; 15] = [
     NodeKind::Or,
     NodeKind::And,
     NodeKind::Basic,

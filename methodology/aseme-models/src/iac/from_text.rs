@@ -43,7 +43,8 @@ pub(crate) fn from_text(document: &ItemDocument) -> (Iac, Vec<Diagnostic>) {
 }
 
 const WORDS: [&str; 5] = ["IAC", "Variable", "Constants", "States", "Transitions"];
-const NODE_KEYS: [&str; 14] = [
+/// The keys of a state's settings.
+pub(crate) const NODE_KEYS: [&str; 14] = [
     "type",
     "label",
     "activity",
@@ -317,7 +318,8 @@ impl Reader {
 
     fn transition(&mut self, line: &Line, paths: &NodePaths, labels: &[String]) -> Option<usize> {
         let content = &line.content;
-        let Some(arrow) = outside_quotes(&content.text, "->") else {
+        let Some(TransitionLine { source, target, modifiers, expression: te }) = transition_line(content)
+        else {
             let message = format!("`{}` has no `->`", content.text);
             self.report(
                 Diagnostic::error("E0240", content.span, message)
@@ -325,13 +327,7 @@ impl Reader {
             );
             return None;
         };
-        let rest = content.part(arrow + 2..content.text.len());
-        let colon = outside_quotes(&rest.text, ":").unwrap_or(rest.text.len());
-        let (head, te) = (rest.part(0..colon), rest.part((colon + 1).min(rest.text.len())..rest.text.len()));
-        let modifiers = modifiers_start(&head.text);
-        let source = self.end(paths, &content.part(0..arrow));
-        let target = self.end(paths, &head.part(0..modifiers));
-        let modifiers = head.part(modifiers..head.text.len());
+        let (source, target) = (self.end(paths, &source), self.end(paths, &target));
         let mut transition = IacTransition {
             te: without_null(&self.plain(&te)),
             place: TextPosition(content.span),
@@ -415,8 +411,31 @@ fn set<T>(place: &mut T, value: T) -> bool {
     true
 }
 
+/// The parts of a transition's line.
+pub(crate) struct TransitionLine {
+    pub(crate) source: SpannedText,
+    pub(crate) target: SpannedText,
+    pub(crate) modifiers: SpannedText,
+    pub(crate) expression: SpannedText,
+}
+
+/// `source -> target modifiers : expression`; `None` without an arrow.
+pub(crate) fn transition_line(content: &SpannedText) -> Option<TransitionLine> {
+    let arrow = outside_quotes(&content.text, "->")?;
+    let rest = content.part(arrow + 2..content.text.len());
+    let colon = outside_quotes(&rest.text, ":").unwrap_or(rest.text.len());
+    let head = rest.part(0..colon);
+    let modifiers = modifiers_start(&head.text);
+    Some(TransitionLine {
+        source: content.part(0..arrow),
+        target: head.part(0..modifiers),
+        modifiers: head.part(modifiers..head.text.len()),
+        expression: rest.part((colon + 1).min(rest.text.len())..rest.text.len()),
+    })
+}
+
 /// `key = value`. A node cannot look like this, since a name with `=` must be quoted.
-fn node_setting(line: &Line) -> Option<(SpannedText, SpannedText)> {
+pub(crate) fn node_setting(line: &Line) -> Option<(SpannedText, SpannedText)> {
     let text = &line.content.text;
     let equals = text.find('=')?;
     let key = text[..equals].trim_end();

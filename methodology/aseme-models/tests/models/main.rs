@@ -8,6 +8,7 @@
 )]
 
 mod diff;
+mod edit;
 mod faults;
 mod generators;
 mod kit;

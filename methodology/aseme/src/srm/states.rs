@@ -9,7 +9,8 @@ use super::entries::{entry_spans, one_line};
 use super::{Reader, Section, SrmEntry, StateEntry};
 use crate::text;
 
-const KEYS: [&str; 7] = ["activity", "priority", "entry", "exit", "defer", "duration", "history"];
+/// The keys of settings.
+pub(crate) const KEYS: [&str; 7] = ["activity", "priority", "entry", "exit", "defer", "duration", "history"];
 
 impl Reader {
     /// Parses entries, each of which starts with the line that has its `:`.

@@ -3,7 +3,7 @@
 
 use narukom::Timestamp;
 use yase::Activation;
-use yase::migrate::plan;
+use yase::migrate::{Disposition, MigrationError, plan};
 
 use super::chart_host::ChartHost;
 use super::{ChartContext, ChartRunner};
@@ -19,6 +19,8 @@ pub struct ModelSwap {
     pub states: Vec<(String, String)>,
     /// Whether active states without a counterpart may be left.
     pub accepts_losses: bool,
+    /// Whether it is only judged: nothing changes then.
+    pub is_dry_run: bool,
     /// The properties of the agent on the new chart; their monitors start anew.
     pub monitors: Option<Monitors>,
 }
@@ -38,12 +40,25 @@ impl ChartRunner {
         if swap.accepts_losses {
             plan = plan.accepting_losses();
         }
+        let reasons = |refusal: MigrationError| -> Vec<String> {
+            refusal.reasons().iter().map(ToString::to_string).collect()
+        };
+        if swap.is_dry_run {
+            let report = self.machine.judge_swap(&plan).map_err(reasons)?;
+            let is_changed = |disposition: &Disposition| !matches!(disposition, Disposition::Kept);
+            let is_reported = |path: &str| report.findings.iter().any(|finding| finding.name == path);
+            let others =
+                plan.nodes().filter(|(path, disposition)| is_changed(disposition) && !is_reported(path));
+            let others = others.map(|(path, disposition)| match disposition {
+                Disposition::Lost(why) => format!("state `{path}`, not active: lost, {why}"),
+                other => format!("state `{path}`, not active: {other}"),
+            });
+            return Ok(report.findings.iter().map(ToString::to_string).chain(others).collect());
+        }
         let listeners = self.host.listeners().clone();
         let agent = self.host.agent.clone();
         let mut machine = self.machine.clone();
-        let report = machine
-            .swap(&plan)
-            .map_err(|refusal| refusal.reasons().iter().map(ToString::to_string).collect::<Vec<String>>())?;
+        let report = machine.swap(&plan).map_err(reasons)?;
         let monitors = swap.monitors;
         let home = self.chart_context(&agent, &listeners, now);
         let desk =

@@ -57,6 +57,11 @@ impl ChangePlan {
     ) -> Result<ChangePlan, ChangeRefusal> {
         let context = PlanContext { change, host: roster, control: staff, now };
         match change.action() {
+            action if change.dry_run && action != Action::SwapModel => Err(refusal_with(
+                "E0352",
+                "this action has no dry run",
+                "only the exchange of a model can be judged before it happens",
+            )),
             Action::NoAction => Err(refusal("E0350", "the change has no action")),
             Action::AddAgents => context.add_agents(|_| true),
             _ if context.rejects_chart() => Err(refusal_with(
@@ -426,7 +431,13 @@ impl PlanContext<'_> {
         let states = states.iter().map(|state| (state.key.clone(), state.value.clone())).collect();
         let of_agent = Some((&profile.property_sets[..], profile.name.as_str(), profile.charts.len()));
         let monitors = binder.monitors(of_agent, &profile.charts[place].own.property_sets, &bound.chart)?;
-        let swap = Box::new(ModelSwap { bound, states, accepts_losses: *accept_losses, monitors });
+        let swap = Box::new(ModelSwap {
+            bound,
+            states,
+            accepts_losses: *accept_losses,
+            is_dry_run: self.change.dry_run,
+            monitors,
+        });
         Ok(ChangePlan {
             warnings,
             ..update_plan(profile, AgentUpdate { swap: Some((place, swap)), ..AgentUpdate::default() })

@@ -64,13 +64,18 @@ impl HostAdmin {
         &self.context.hub
     }
 
-    /// Publishes an external change and applies it, after those that others have published.
+    /// Publishes an external change and applies it, after those that others have published. A dry
+    /// run changes nothing, so that it is neither published nor recorded.
     pub(crate) fn submit_change(
         &mut self,
         change: Change,
         staff: &mut dyn AgentControl,
         now: Timestamp,
     ) -> Changed {
+        if change.dry_run {
+            self.apply_requests(staff, now);
+            return self.apply_change(&change, None, staff, now);
+        }
         self.external_changes.publish(change.clone(), now);
         let mut own = None;
         self.apply_all(staff, now, &mut |asked, changed| {
@@ -160,7 +165,14 @@ impl HostAdmin {
         staff: &mut dyn AgentControl,
         now: Timestamp,
     ) -> Changed {
-        let plan = ChangePlan::of(change, self, staff, now);
+        let plan = match change.dry_run && header.is_some() {
+            true => Err(refusal_with(
+                "E0352",
+                "a message cannot ask for a dry run",
+                "ask on the control socket: `monas agent swap --dry-run`",
+            )),
+            false => ChangePlan::of(change, self, staff, now),
+        };
         self.execute_plan(change, plan, header, staff)
     }
 
@@ -173,13 +185,16 @@ impl HostAdmin {
         staff: &mut dyn AgentControl,
     ) -> Changed {
         let asked = header.and_then(|header| self.change_ref(header));
-        let made = plan.and_then(|plan| self.carry_out(plan, asked, staff));
+        let made = plan.and_then(|plan| self.carry_out(plan, change.dry_run, asked, staff));
         let (done, findings) = match made {
             Ok(said) => (true, said),
             Err(reasons) => (false, reasons.iter().map(finding).collect()),
         };
         let (host, agent) = (self.context.hub.host(), &change.agent);
         match done {
+            _ if change.dry_run => {
+                tracing::info!(%host, %agent, action = ?change.action(), done, "a dry run")
+            }
             true => tracing::info!(%host, %agent, action = ?change.action(), "changed"),
             false => tracing::warn!(%host, %agent, action = ?change.action(), "a change was refused"),
         }
@@ -204,6 +219,7 @@ impl HostAdmin {
     fn carry_out(
         &mut self,
         plan: ChangePlan,
+        is_dry_run: bool,
         asked: Option<ChangeRef>,
         staff: &mut dyn AgentControl,
     ) -> Result<Vec<Finding>, ChangeRefusal> {
@@ -215,7 +231,9 @@ impl HostAdmin {
                     .apply(&profile.name, AgentUpdate { change: asked, ..*orders })
                     .map_err(refusal_from_reasons)?;
                 said.extend(remarks.into_iter().map(note));
-                self.set_profile(*profile);
+                if !is_dry_run {
+                    self.set_profile(*profile);
+                }
             }
             PlanStep::Launch(agents) => {
                 for (profile, member) in agents {

@@ -7,6 +7,7 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { launch, start, useBuiltPage } from './browser.mjs';
+import { testEditor } from './editor.mjs';
 
 const PROGRAM = process.env.MONAS ?? fileURLToPath(new URL('../../../../target/debug/monas', import.meta.url));
 const MATCH = fileURLToPath(new URL('../../../../config/match.xml', import.meta.url));
@@ -660,6 +661,9 @@ try {
   await check('the cameras of a robot are shown', () => cameras(browser));
   await check('an event is raised by its name', () => events(browser));
   await check('a run is steered only with permission', () => steering(browser));
+  if ('editor'.includes(ONLY) || ONLY.startsWith('editor')) {
+    await testEditor({ program: PROGRAM, browser, open, screenshots: SCREENSHOTS, check });
+  }
 } finally {
   await browser.close();
   await run.stop();

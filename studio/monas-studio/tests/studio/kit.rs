@@ -103,9 +103,20 @@ pub(crate) struct Viewer(pub(crate) WebSocket<TcpStream>);
 
 impl Viewer {
     pub(crate) fn open(studio: &Studio) -> Result<Viewer, String> {
+        Viewer::open_at(studio, "/socket")
+    }
+
+    /// Opens it with the token of its address.
+    #[cfg_attr(not(unix), allow(dead_code, reason = "only some tests use tokens"))]
+    pub(crate) fn open_with_token(studio: &Studio) -> Result<Viewer, String> {
+        let token = studio.url().split_once('?').map(|(_, token)| token).unwrap_or_default();
+        Viewer::open_at(studio, &format!("/socket?{token}"))
+    }
+
+    fn open_at(studio: &Studio, path: &str) -> Result<Viewer, String> {
         let stream = TcpStream::connect(address(studio)).unwrap();
         stream.set_read_timeout(Some(SOON)).unwrap();
-        let url = format!("ws://{}/socket", address(studio));
+        let url = format!("ws://{}{path}", address(studio));
         let (socket, _) = client(url, stream).map_err(|error| error.to_string())?;
         Ok(Viewer(socket))
     }

@@ -6,5 +6,7 @@
 mod control;
 mod kit;
 #[cfg(unix)]
+mod models;
+#[cfg(unix)]
 mod run;
 mod tape;

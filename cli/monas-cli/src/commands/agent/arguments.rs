@@ -151,6 +151,10 @@ pub(crate) enum AgentCommand {
         /// Accept the loss of history, timers and events that the new chart does not have.
         #[arg(long)]
         lossy: bool,
+        /// Print what would become of the states, activities, timers and events, and change
+        /// nothing.
+        #[arg(long)]
+        dry_run: bool,
         #[command(flatten)]
         run: RunSelector,
     },

@@ -15,7 +15,7 @@ pub(crate) fn execute(
     console: &mut CommandOutput<'_>,
 ) -> Result<Exit, CommandFailure> {
     let Some((change, run)) = requested_change(command)? else { return Ok(Exit::Success) };
-    let chart = change.chart.clone();
+    let (chart, is_dry_run) = (change.chart.clone(), change.dry_run);
     let mut changed = request_change(change, run)?;
     // The runtime names the states; how they are mapped is a matter of the command line.
     let unmapped = changed.findings.iter_mut().rfind(|finding| finding.code == "E0356");
@@ -24,7 +24,7 @@ pub(crate) fn execute(
                         loss of history, timers and events"
             .into();
     }
-    print_outcome(&changed, &sentence(&changed, &chart), run.format.value, console)
+    print_outcome(&changed, &sentence(&changed, &chart, is_dry_run), run.format.value, console)
 }
 
 /// The change that a command requests, and the run; none for commands that only inspect.
@@ -62,15 +62,16 @@ fn requested_change(command: &AgentCommand) -> Result<Option<(Change, &RunSelect
             let chart = chart.clone().unwrap_or_default();
             (Change { settings: settings(given)?, chart, ..change_of(Action::Set, agent) }, run)
         }
-        AgentCommand::Swap { agent, model, chart, states, lossy, run } => {
-            let (states, accept_losses) = (settings(states)?, *lossy);
+        AgentCommand::Swap { agent, model, chart, states, lossy, dry_run, run } => {
+            let (states, accept_losses, dry_run) = (settings(states)?, *lossy, *dry_run);
             let chart = chart.clone().unwrap_or_default();
             // A name that is not a file may be that of a generated chart.
             let (text, file) = match Path::new(model).exists() {
                 true => text_of(Path::new(model), run)?,
                 false => (String::new(), model.clone()),
             };
-            (Change { chart, file, text, states, accept_losses, ..change_of(Action::SwapModel, agent) }, run)
+            let swap = change_of(Action::SwapModel, agent);
+            (Change { chart, file, text, states, accept_losses, dry_run, ..swap }, run)
         }
     }))
 }
@@ -109,7 +110,7 @@ fn text_of(file: &Path, run: &RunSelector) -> Result<(String, String), CommandFa
     Ok((read.map_err(failed)?, name))
 }
 
-fn sentence(changed: &Changed, chart: &str) -> String {
+fn sentence(changed: &Changed, chart: &str, is_dry_run: bool) -> String {
     let Changed { agent, cycle, .. } = changed;
     let its = if chart.is_empty() { String::new() } else { format!("statechart `{chart}` of ") };
     match changed.action() {
@@ -120,6 +121,7 @@ fn sentence(changed: &Changed, chart: &str) -> String {
         Action::PauseAgent => format!("`{agent}` pauses after its cycle {cycle}"),
         Action::ResumeAgent => format!("`{agent}` resumes after its cycle {cycle}"),
         Action::StepAgent => format!("`{agent}` has completed its cycle {cycle}"),
+        _ if is_dry_run => format!("{its}`{agent}` could be changed after its cycle {cycle}; it is not"),
         _ => format!("{its}`{agent}` is changed after its cycle {cycle}"),
     }
 }

@@ -91,6 +91,31 @@ fn a_removed_state_is_replaced_by_the_mapped_one() {
 }
 
 #[test]
+fn a_dry_run_says_what_a_swap_would_do_and_changes_nothing() {
+    let (mut simulation, notes) = simulation("m = A . B");
+    notes.taken();
+    let dry = |text: &str| Change { dry_run: true, ..swap(text) };
+    let lines = |changed: &Changed| -> Vec<String> {
+        changed.findings.iter().map(|finding| finding.message.clone()).collect()
+    };
+    let judged = simulation.change("local", dry("m = A . A . B . A")).unwrap();
+    made(&judged);
+    assert!(lines(&judged).contains(&"state `m/B`: kept".to_owned()), "{:?}", lines(&judged));
+    let judged = simulation.change("local", dry("m = B")).unwrap();
+    made(&judged);
+    let gone = lines(&judged).into_iter().find(|line| line.starts_with("state `m/A`, not active: lost"));
+    assert!(gone.is_some(), "{:?}", lines(&judged));
+    // what a swap would refuse
+    assert_eq!(refused_first(&simulation.change("local", dry("m = A")).unwrap()).0, "E0356");
+    let pause = Change { dry_run: true, ..change(Action::PauseAgent, "m") };
+    assert_eq!(refused_first(&simulation.change("local", pause).unwrap()).0, "E0352");
+    // the chart is still the first
+    made(&simulation.change("local", swap("m = A . B . A")).unwrap());
+    simulation.run_until(at(250)).unwrap();
+    assert_eq!(notes.taken(), ["B again"]);
+}
+
+#[test]
 fn a_chart_pauses_steps_stops_and_restarts() {
     let (mut simulation, notes) = simulation("m = (A . B)~");
     notes.taken();

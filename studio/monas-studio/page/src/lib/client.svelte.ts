@@ -10,6 +10,7 @@ import type {
   Ground,
   LogLine,
   Json,
+  ModelReply,
   Picture,
   Reply,
   RunFacts,
@@ -85,6 +86,9 @@ export class StudioClient {
   /** The tape beside: it gets its messages from here. */
   beside = $state.raw<StudioClient | null>(null);
 
+  /** The models that this page may edit, if there are any. */
+  models = $state.raw<{ files: string[]; writable: boolean } | null>(null);
+
   #parent: StudioClient | null = null;
   #socket: WebSocket | null = null;
   #retry = FIRST_RETRY;
@@ -93,7 +97,7 @@ export class StudioClient {
   /** The drawings that were asked for, by chart. */
   #asked = new Map<string, number>();
   #tableTime = 0;
-  #requests = new Map<number, (reply: Reply) => void>();
+  #requests = new Map<number, (reply: Reply & ModelReply) => void>();
   #lastRequest = 0;
 
   connect(): void {
@@ -179,7 +183,12 @@ export class StudioClient {
     return this.#request({ type: 'form', topic });
   }
 
-  #request(message: object): Promise<Reply> {
+  /** Asks about a model: `open`, `outline`, `check`, `complete`, `edit` or `save`. */
+  model(what: string, more: object): Promise<ModelReply> {
+    return this.#request({ type: `model ${what}`, ...more });
+  }
+
+  #request(message: object): Promise<Reply & ModelReply> {
     this.#lastRequest += 1;
     const id = this.#lastRequest;
     if (this.#socket?.readyState !== WebSocket.OPEN) {
@@ -267,6 +276,9 @@ export class StudioClient {
           this.#requests.get(message.id)?.(message);
           this.#requests.delete(message.id);
         }
+        break;
+      case 'models':
+        this.models = { files: message.files, writable: message.writable };
         break;
       case 'refused':
         this.sample = message;

@@ -324,9 +324,112 @@ export interface Reply {
   fields?: FormField[];
 }
 
+/** A finding in the text of a model; positions are those of the text. */
+export interface ModelFinding extends Finding {
+  from: number;
+  to: number;
+  trace: string | null;
+}
+
+export interface StatePart {
+  from: number;
+  to: number;
+  settings: Record<string, string>;
+}
+
+export interface TransitionPart {
+  /** Null if the formulas of a role alone make it. */
+  from: number | null;
+  to: number | null;
+  expression: string;
+  modifiers: string;
+  /** Whether its entry is for other transitions too. */
+  shared: boolean;
+}
+
+/** An entry of a role. */
+export interface EntryPart {
+  section: string;
+  from: number;
+  to: number;
+  text: string;
+}
+
+export type FieldPart =
+  | { key: string; kind: 'text' | 'formulas' }
+  | { key: string; kind: 'choice'; choices: string[] }
+  | { key: string; kind: 'links'; class: string; many: boolean };
+
+export interface ClassPart {
+  word: string;
+  title: string;
+  fields: FieldPart[];
+}
+
+export interface ItemPart {
+  item: number;
+  word: string;
+  name: string;
+  reference: string;
+  from: number;
+  to: number;
+  fields: Record<string, string[]>;
+}
+
+export interface TableRow {
+  activity: string;
+  functionality: string;
+  technology: string;
+}
+
+/** What of a model can be edited. */
+export type ModelParts =
+  | { form: 'role'; states: StatePart[]; transitions: TransitionPart[]; entries: EntryPart[]; table: TableRow[] }
+  | { form: 'chart'; states: StatePart[]; transitions: TransitionPart[] }
+  | { form: 'items'; classes: ClassPart[]; items: ItemPart[] }
+  | { form: 'text' };
+
+export interface Completion {
+  text: string;
+  kind: string;
+  detail: string;
+}
+
+/** The reply to a request about models: of each only its own fields. */
+export interface ModelReply {
+  done: boolean;
+  reason?: string | null;
+  text?: string;
+  revision?: string;
+  picture?: Picture | null;
+  parts?: ModelParts;
+  findings?: ModelFinding[];
+  stopped?: boolean;
+  from?: number;
+  to?: number;
+  entries?: Completion[];
+  edits?: { from: number; to: number; insert: string }[];
+}
+
+/** An edit of a model; the program makes replacements of its text from it. */
+export type ModelEdit =
+  | { edit: 'set_transition'; transition: number; expression: string | null; modifiers: string | null }
+  | { edit: 'add_transition'; source: number; target: number; expression: string }
+  | { edit: 'remove_transition'; transition: number }
+  | { edit: 'rename_state'; state: number; name: string }
+  | { edit: 'set_state'; state: number; key: string; value: string | null }
+  | { edit: 'add_state'; parent: number; kind: string; name: string }
+  | { edit: 'remove_state'; state: number }
+  | { edit: 'set_field'; item: number; key: string; value: string | null }
+  | { edit: 'add_item'; word: string; name: string }
+  | { edit: 'remove_item'; item: number }
+  | { edit: 'set_entry'; entry: number; text: string | null }
+  | { edit: 'add_entry'; section: string; text: string };
+
 export type ServerMessage =
   | Frame
-  | ({ type: 'reply'; id: number | null } & Reply)
+  | ({ type: 'reply'; id: number | null } & Omit<Reply, 'fields'> & ModelReply)
+  | { type: 'models'; files: string[]; writable: boolean }
   | { type: 'picture'; key: string; beside?: boolean; picture: Picture | null }
   | { type: 'why'; key: string; node: number; why: Explanation }
   | { type: 'why transition'; key: string; transition: number; why: TransitionExplanation }

@@ -1,0 +1,168 @@
+//! The models that pages may edit.
+
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use serde_json::{Value, json};
+
+/// The names of files that a folder is searched for.
+const ENDINGS: [&str; 8] = ["srm", "sag", "suc", "aip", "ft", "eac", "iac", "stct"];
+
+/// The longest model, in bytes.
+pub(crate) const TEXT_LIMIT: u64 = 1 << 20;
+
+/// What models mean. Its replies are read by the page: positions are counted in
+/// UTF-16 code units, as a page counts them.
+pub trait ModelLanguage: Send + Sync {
+    /// What is understood of a text, however wrong it is: `picture`, `findings`, and `parts`, which
+    /// lists what can be edited.
+    fn outline(&self, name: &str, text: &str) -> Value;
+
+    /// All findings about a text, as `findings`. It may take long, and ends early when `stop` is
+    /// set.
+    fn check(&self, name: &str, text: &str, stop: &Arc<AtomicBool>) -> Value;
+
+    /// What can be written at a position of a text, or of an expression of the model: `from`, `to`
+    /// and `entries`.
+    fn complete(&self, text: &str, expression: Option<&str>, at: usize) -> Value;
+
+    /// The replacements of a text that make an edit: a list of `from`, `to` and `insert`.
+    ///
+    /// # Errors
+    /// Why it is not possible, for people.
+    fn edit(&self, text: &str, edit: Value) -> Result<Value, String>;
+}
+
+/// Files of models with the language that they are in. Pages read and write these files and no
+/// other.
+pub struct ModelWorkspace {
+    files: Vec<ModelFile>,
+    language: Arc<dyn ModelLanguage>,
+    /// Held while a file is compared and replaced: of two pages that save, the second is refused.
+    saving: Mutex<()>,
+}
+
+/// A file that can be edited.
+struct ModelFile {
+    /// As it was given.
+    name: String,
+    /// Without links, so that the file itself is replaced.
+    path: PathBuf,
+}
+
+impl ModelWorkspace {
+    /// The files at these paths, each once; of a folder all that are named like a model.
+    ///
+    /// # Errors
+    /// There is no file, or a path is none.
+    pub fn new(paths: &[PathBuf], language: Arc<dyn ModelLanguage>) -> io::Result<ModelWorkspace> {
+        let file = |path: PathBuf| {
+            let name = path.display().to_string();
+            let found = fs::canonicalize(&path).and_then(|path| match path.is_file() {
+                true => Ok(path),
+                false => Err(io::Error::other("not a file")),
+            });
+            found
+                .map(|path| ModelFile { name: name.clone(), path })
+                .map_err(|error| io::Error::new(error.kind(), format!("{name}: {error}")))
+        };
+        let mut files: Vec<ModelFile> = Vec::new();
+        for path in given(paths)? {
+            let found = file(path)?;
+            if !files.iter().any(|known| known.path == found.path) {
+                files.push(found);
+            }
+        }
+        if files.is_empty() {
+            let message = format!("there is no model to edit; models end in .{}", ENDINGS.join(", ."));
+            return Err(io::Error::other(message));
+        }
+        Ok(ModelWorkspace { files, language, saving: Mutex::default() })
+    }
+
+    pub(crate) fn language(&self) -> &dyn ModelLanguage {
+        &*self.language
+    }
+
+    pub(crate) fn names(&self) -> Vec<&str> {
+        self.files.iter().map(|file| file.name.as_str()).collect()
+    }
+
+    pub(crate) fn name(&self, file: usize) -> Result<&str, String> {
+        self.file(file).map(|file| file.name.as_str())
+    }
+
+    /// A file's text, and the revision by which a page says what it has read.
+    pub(crate) fn open(&self, file: usize) -> Result<Value, String> {
+        let file = self.file(file)?;
+        let text = file.read()?;
+        Ok(json!({"done": true, "revision": revision(&text), "text": text}))
+    }
+
+    /// Replaces a file if it still has the revision that the page has read; otherwise the reply has
+    /// what the file contains now.
+    pub(crate) fn save(&self, file: usize, text: &str, known: &str) -> Result<Value, String> {
+        let file = self.file(file)?;
+        let _saving = self.saving.lock().unwrap_or_else(PoisonError::into_inner);
+        let present = file.read()?;
+        if revision(&present) != known {
+            return Ok(json!({"done": false, "reason": "the file has changed since it was read",
+                "revision": revision(&present), "text": present}));
+        }
+        monas_files::write(&file.path, text).map_err(|error| format!("{}: {error}", file.name))?;
+        Ok(json!({"done": true, "revision": revision(text)}))
+    }
+
+    fn file(&self, file: usize) -> Result<&ModelFile, String> {
+        self.files.get(file).ok_or_else(|| "the studio was not given such a file".to_owned())
+    }
+}
+
+impl ModelFile {
+    fn read(&self) -> Result<String, String> {
+        read_text(&self.path).map_err(|error| format!("{}: {error}", self.name))
+    }
+}
+
+/// The paths of files: those given, and the models in folders in order.
+fn given(paths: &[PathBuf]) -> io::Result<Vec<PathBuf>> {
+    let mut files = Vec::new();
+    for path in paths {
+        if !path.is_dir() {
+            files.push(path.clone());
+            continue;
+        }
+        let inside =
+            fs::read_dir(path)?.map(|entry| Ok(entry?.path())).collect::<io::Result<Vec<PathBuf>>>()?;
+        let mut models: Vec<PathBuf> = inside.into_iter().filter(|path| is_model(path)).collect();
+        models.sort();
+        files.extend(models);
+    }
+    Ok(files)
+}
+
+fn is_model(path: &Path) -> bool {
+    let ending = path.extension().and_then(|ending| ending.to_str());
+    path.is_file() && ending.is_some_and(|ending| ENDINGS.contains(&ending))
+}
+
+fn read_text(path: &Path) -> io::Result<String> {
+    let size = fs::metadata(path)?.len();
+    if size > TEXT_LIMIT / 2 {
+        return Err(io::Error::other(format!("{size} bytes are too many to edit here")));
+    }
+    fs::read_to_string(path)
+}
+
+fn revision(text: &str) -> String {
+    blake3::hash(text.as_bytes()).to_hex().to_string()
+}
+
+impl std::fmt::Debug for ModelWorkspace {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_list().entries(self.names()).finish()
+    }
+}
