@@ -29,6 +29,7 @@
 //! # Ok::<(), monas_rcsssmj::Error>(())
 //! ```
 
+mod admission;
 mod anatomy;
 mod body;
 mod connection;
@@ -38,14 +39,18 @@ mod error;
 pub mod expression;
 pub mod frame;
 mod inertia;
+mod kick;
 pub mod kinematics;
 mod limits;
+mod mass;
 mod match_rules;
 pub mod monitor;
 mod options;
+mod parameters;
 pub mod percept;
 mod policy;
 mod server;
+mod sine_parameters;
 mod sine_walk;
 pub mod walk;
 
@@ -55,10 +60,13 @@ pub use anatomy::{JOINTS, JointValues};
 pub use body::T1;
 pub use error::{Error, ErrorKind};
 pub use inertia::Inertia;
+pub use kick::{Kick, KickParameters};
+pub use mass::{centre_of_mass, mass};
 pub use match_rules::FieldSize;
 pub use policy::PolicyWalk;
 pub use server::Server;
-pub use sine_walk::{SineParameters, SineWalk};
+pub use sine_parameters::SineParameters;
+pub use sine_walk::SineWalk;
 
 monas_robot::body_kind!(BodyKind {
     name: "rcsssmj",

@@ -17,7 +17,7 @@ const INSTALL: &str =
 /// How long the server may take to answer: Python and the physics are loaded first.
 const STARTING: Duration = Duration::from_secs(90);
 /// The pause between two attempts to connect.
-const RETRY: Duration = Duration::from_millis(100);
+const RETRY: Duration = Duration::from_millis(5);
 
 /// A running server; it ends with this value.
 #[derive(Debug)]
