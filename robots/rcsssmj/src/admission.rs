@@ -19,9 +19,9 @@ use crate::server::Server;
 
 /// The cycle whose percepts the player receives first. Monitors receive the state after a cycle
 /// with an odd number.
-const FIRST: u64 = 501;
+const FIRST: u64 = 1001;
 /// How often a server is started that was not joined in time.
-const ATTEMPTS: usize = 5;
+const ATTEMPTS: usize = 10;
 /// How long the server has to take in an agent while it waits for another one.
 const TAKING_IN: Duration = Duration::from_millis(50);
 /// How long it has to send what it has computed already.
@@ -43,8 +43,10 @@ impl Admission {
     pub(crate) fn new(options: &Options) -> Result<Admission, Error> {
         for _ in 0..ATTEMPTS {
             let mut server = Server::start(options.server.as_deref(), true)?;
+            // Connected before the first cycle: the threads of a busy server wait for each other.
+            let holder = server.agent()?;
             let monitor = server.monitor()?;
-            if let Some(player) = join(&server, monitor, options)? {
+            if let Some(player) = join(&server, holder, monitor, options)? {
                 return Ok(Admission { server, player });
             }
         }
@@ -54,8 +56,12 @@ impl Admission {
 }
 
 /// Joins in the first cycle; none if it was missed.
-fn join(server: &Server, mut monitor: Monitor, options: &Options) -> Result<Option<Connection>, Error> {
-    let mut holder = Connection::open(server.agents())?;
+fn join(
+    server: &Server,
+    mut holder: Connection,
+    mut monitor: Monitor,
+    options: &Options,
+) -> Result<Option<Connection>, Error> {
     // A number beside the player's.
     let number = if options.number > 1 { options.number - 1 } else { 2 };
     init(&mut holder, &options.team, number)?;

@@ -55,7 +55,7 @@ const FAST: f64 = 0.8;
 const FIXED: [(&str, f64); 8] = [
     ("forwards", FAST),
     ("backwards", 0.2),
-    ("sideways", 0.12),
+    ("sideways", 0.2),
     ("turning", 0.8),
     ("leg_stiffness", 200.0),
     ("leg_damping", 5.0),
