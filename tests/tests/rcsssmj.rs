@@ -74,11 +74,74 @@ impl Run {
         })
     }
 
-    /// Where the attacker believes the ball on the field, towards the goal to attack, m.
-    fn ball_x(&self) -> f64 {
+    /// Where the attacker believes itself and the ball on the field, which it attacks along x: x and
+    /// y, m, heading, rad, and x and y of the ball.
+    fn scene(&self) -> [f64; 5] {
         let (pose, ball) = (self.blackboard.read(POSE).unwrap(), self.blackboard.read(BALL).unwrap());
-        (pose.field_from_robot() * ball.position()).x
+        let ball = pose.field_from_robot() * ball.position();
+        [pose.x, pose.y, pose.heading, ball.x, ball.y]
     }
+}
+
+/// The half of the field with the goal that is attacked from above, as an animated SVG of scenes,
+/// ten of them in each second. Lines show the whole ways.
+fn film(scenes: &[[f64; 5]]) -> String {
+    let line = |x: usize, y: usize| {
+        let points = scenes.iter().map(|scene| format!("{:.2},{:.2}", scene[x], -scene[y]));
+        points.collect::<Vec<_>>().join(" ")
+    };
+    let seconds = scenes.len() as f64 / 10.0;
+    let motion = |kind: &str, values: Vec<String>| {
+        format!(
+            r#"<animateTransform attributeName="transform" type="{kind}" dur="{seconds}s" repeatCount="indefinite" values="{}"/>"#,
+            values.join(";")
+        )
+    };
+    let moves = |x: usize, y: usize| {
+        motion("translate", scenes.iter().map(|scene| format!("{:.2} {:.2}", scene[x], -scene[y])).collect())
+    };
+    let turns = scenes.iter().map(|scene| format!("{:.0}", -scene[2].to_degrees())).collect();
+    format!(
+        r##"<svg xmlns="http://www.w3.org/2000/svg" viewBox="-4 -10 35 20" width="1050" height="600">
+<rect x="-4" y="-10" width="35" height="20" fill="#4a7c4a"/>
+<g fill="none" stroke="#fff" stroke-width="0.1">
+<path d="M0 -10V10M27.5 -10V10M27.5 -3.65H23.5V3.65H27.5M27.5 -8.25H18.5V8.25H27.5"/>
+<circle r="5.5"/><path d="M27.5 -1.83H28.5V1.83H27.5" stroke="#ff0" stroke-width="0.16"/>
+</g>
+<polyline points="{}" fill="none" stroke="#f90" stroke-width="0.08"/>
+<polyline points="{}" fill="none" stroke="#9cf" stroke-width="0.08"/>
+<g>{}<g>{}<path d="M0.4 0L-0.3 0.3V-0.3Z" fill="#06c" stroke="#fff" stroke-width="0.06"/></g></g>
+<circle r="0.2" fill="#f60" stroke="#fff" stroke-width="0.06">{}</circle>
+</svg>
+"##,
+        line(3, 4),
+        line(0, 1),
+        moves(0, 1),
+        motion("rotate", turns),
+        moves(3, 4),
+    )
+}
+
+/// Writes a film of a run until its first goal to the file that `MONAS_T1_FILM` names.
+#[test]
+fn a_film_of_a_goal_on_the_soccer_server() {
+    let Some(file) = std::env::var_os("MONAS_T1_FILM") else { return };
+    if !has_server() {
+        return;
+    }
+    let mut run = Run::new(ATTACKER, 1, "");
+    let mut scenes = Vec::new();
+    let goal = (1..=LONGEST).find(|second| {
+        run.run_until(*second);
+        let scored = run.blackboard.read(ANNOUNCEMENT).unwrap().own_score > 0;
+        if !scored && run.blackboard.read(BALL).is_some() {
+            scenes.push(run.scene());
+        }
+        scored
+    });
+    println!("a goal after {goal:?} s");
+    std::fs::write(file, film(&scenes)).unwrap();
+    assert!(goal.is_some(), "no goal");
 }
 
 #[test]
@@ -88,9 +151,9 @@ fn the_attacker_brings_the_ball_towards_the_goal_on_the_soccer_server() {
     }
     let mut run = Run::new(ATTACKER, 1, "");
     run.run_until(60);
-    let x = run.ball_x();
+    let x = run.scene()[3];
     println!("after a minute the ball is {x:.1} m towards the goal");
-    assert!(x > 3.0, "the ball is at {x}");
+    assert!(x > 8.0, "the ball is at {x}");
 }
 
 #[test]
