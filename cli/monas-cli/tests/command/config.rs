@@ -273,7 +273,8 @@ fn what_a_body_cannot_do_is_said_with_the_activities_that_rely_on_it() {
 
     let check = monas(&["config", "check", "config/rcsssmj_goalie.xml"]);
     assert_eq!(check.code, Some(0), "{}", check.err);
-    let dive = "information[E0370]: body `rcsssmj`: the skill is over at once, without a motion; this concerns ";
+    let dive =
+        "information[E0370]: body `rcsssmj`: the skill is over at once, without a motion; this concerns ";
     assert!(check.err.contains(dive) && check.err.contains("Dive"), "{}", check.err);
 
     // In a match the world stands in for what the Nao's interface lacks.
