@@ -26,6 +26,8 @@ pub(crate) const HEAD_PITCH: usize = 1;
 pub(crate) const LEFT_SHOULDER_ROLL: usize = 3;
 /// The roll of the right shoulder.
 pub(crate) const RIGHT_SHOULDER_ROLL: usize = 7;
+/// The waist.
+pub(crate) const WAIST: usize = 10;
 /// The first joint of the left leg: pitch, roll and yaw of the hip, knee, pitch and roll of the
 /// ankle.
 pub(crate) const LEFT_LEG: usize = 11;

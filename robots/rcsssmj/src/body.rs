@@ -1,22 +1,23 @@
 //! A T1 on a server as a body.
 
-use std::time::Duration;
-
-use monas_robot::{Actuators, Anatomy, JointCommands, Percepts, Robot};
+use monas_robot::{Actuators, Anatomy, JointCommands, Limits, Percepts, Robot};
 use narukom::Timestamp;
 
-use crate::anatomy::{CYCLE, STRAIGHT_HEIGHT};
+use crate::admission::Admission;
+use crate::anatomy::{CYCLE, JOINTS, STRAIGHT_HEIGHT, limits};
 use crate::connection::Connection;
 use crate::control::T1Control;
 use crate::effector::Effectors;
 use crate::error::Error;
+use crate::kick::KickParameters;
 use crate::match_rules::{FieldPose, MatchRules};
-use crate::monitor::Monitor;
+use crate::monitor::{Command, Monitor};
 use crate::options::Options;
 use crate::percept::{PlayMode, Side};
 use crate::policy::PolicyWalk;
 use crate::server::Server;
-use crate::sine_walk::{SineParameters, SineWalk};
+use crate::sine_parameters::SineParameters;
+use crate::sine_walk::SineWalk;
 use crate::walk::WalkEngine;
 
 /// The usual address of a server for agents.
@@ -31,8 +32,8 @@ const BEHIND: f64 = 0.7;
 const SETTLING: u32 = 100;
 /// The cycles that a command to the monitor may take to show.
 const PATIENCE: u32 = 250;
-/// How long the server has to take up a command to the monitor before its next cycle begins.
-const TAKING_UP: Duration = Duration::from_millis(20);
+/// The cycles that the server has to take in a monitor.
+const TAKING_IN: u32 = 25;
 
 /// A Booster T1 on a server.
 ///
@@ -43,7 +44,12 @@ pub struct T1 {
     control: T1Control,
     rules: MatchRules,
     connection: Connection,
+    /// Where the monitor's commands go, and the connection.
+    monitors: Option<String>,
     monitor: Option<Monitor>,
+    /// Commands that the monitor has not sent yet, and the cycles until it can.
+    instructions: Vec<Command>,
+    taking_in: u32,
     message: Effectors,
     lockstep: bool,
     pick_up: bool,
@@ -61,26 +67,34 @@ impl T1 {
     /// Connects to the server at an address, or starts one, and sets the game up.
     pub(crate) fn open(address: Option<&str>, options: &Options) -> Result<T1, Error> {
         let walk = walk(options)?;
+        let kick = options.kick.as_deref().map_or_else(KickParameters::own, KickParameters::load)?;
         let lockstep = !options.realtime;
-        let (server, monitor, connection) = match address {
-            Some(address) => {
-                let monitor = options.monitor.as_deref().map(Monitor::connect).transpose()?;
-                (None, monitor, Connection::open(address)?)
+        let is_admitted = address.is_none() && lockstep;
+        let (server, monitors, connection) = match address {
+            Some(address) => (None, options.monitor.clone(), Connection::open(address)?),
+            None if lockstep => {
+                let Admission { server, player } = Admission::new(options)?;
+                let monitors = server.monitors().to_owned();
+                (Some(server), Some(monitors), player)
             }
             None => {
                 let mut server = Server::start(options.server.as_deref(), lockstep)?;
-                let monitor = server.monitor()?;
-                let connection = Connection::open(server.agents())?;
-                (Some(server), Some(monitor), connection)
+                server.monitor()?;
+                let (monitors, connection) =
+                    (server.monitors().to_owned(), Connection::open(server.agents())?);
+                (Some(server), Some(monitors), connection)
             }
         };
         let mut rules = MatchRules::new(options.team.clone(), options.number, options.field);
         rules.half = options.half;
         let mut body = T1 {
-            control: T1Control::new(walk),
+            control: T1Control::new(walk, kick),
             rules,
             connection,
-            monitor,
+            monitor: monitors.as_deref().map(Monitor::connect).transpose()?,
+            monitors,
+            instructions: Vec::new(),
+            taking_in: TAKING_IN,
             message: Effectors::default(),
             lockstep,
             pick_up: options.pick_up,
@@ -90,8 +104,13 @@ impl T1 {
             before: [0.0; 3],
             _server: server,
         };
-        body.join(options)?;
+        body.join(options, is_admitted)?;
         Ok(body)
+    }
+
+    /// The ranges of all joints, rad.
+    pub fn joint_limits() -> [Limits; JOINTS] {
+        std::array::from_fn(limits)
     }
 
     /// Where the server says that the torso is: x, y and z on the field, m. No percept of the body
@@ -111,27 +130,42 @@ impl T1 {
         self.control.is_fallen()
     }
 
-    /// The monitor, if the server was started here or its address is known.
-    pub fn monitor(&mut self) -> Option<&mut Monitor> {
-        self.monitor.as_mut()
+    /// Whether commands of a monitor can be sent: the server was started here, or the address for
+    /// monitors is known.
+    pub fn has_monitor(&self) -> bool {
+        self.monitor.is_some()
+    }
+
+    /// Sends a command by the monitor. In lockstep this happens within the next second: the
+    /// commands of each second have effect together, in a cycle that does not depend on the
+    /// computer. Without a monitor it has none.
+    pub fn instruct(&mut self, command: Command) {
+        if self.has_monitor() {
+            self.instructions.push(command);
+        }
     }
 
     /// Joins the game, goes to its place, and waits until the game has begun if it begins it.
-    fn join(&mut self, options: &Options) -> Result<(), Error> {
+    fn join(&mut self, options: &Options, is_admitted: bool) -> Result<(), Error> {
         self.message.clear();
-        self.message.init("T1", &options.team, options.number);
+        match is_admitted {
+            true => self.message.synchronize(),
+            false => self.message.init("T1", &options.team, options.number),
+        }
         self.connection.send(self.message.as_bytes())?;
-        self.receive()?;
-        self.rules.observe(&self.control.percept().game);
+        // What was perceived before it is at its place says nothing.
+        self.connection.receive(|_| Ok(()))?;
         let FieldPose { x, y, heading } = options.start;
         self.message.clear();
         self.message.beam(x, y, heading);
         self.answer()?;
-        self.receive()?;
+        self.connection.receive(|_| Ok(()))?;
+        self.exchange()?;
+        self.rules.observe(&self.control.percept().game);
         for _ in 0..SETTLING {
             self.exchange()?;
         }
-        if options.kick_off && self.monitor.is_some() {
+        if options.kick_off && self.has_monitor() {
             self.kick_off()?;
         }
         Ok(())
@@ -139,8 +173,7 @@ impl T1 {
 
     /// Gives the own team the kick-off and waits until it shows.
     fn kick_off(&mut self) -> Result<(), Error> {
-        let own = self.rules.side;
-        self.instruct(|monitor| monitor.kick_off(own))?;
+        self.instruct(Command::KickOff(self.rules.side));
         for _ in 0..PATIENCE {
             if self.control.percept().game.play_mode != PlayMode::BeforeKickOff {
                 return Ok(());
@@ -150,14 +183,27 @@ impl T1 {
         Err(Error::protocol("the server gives no kick-off"))
     }
 
-    /// Sends a command to the monitor, so that it is taken up before the next cycle.
-    fn instruct(&mut self, command: impl FnOnce(&mut Monitor) -> Result<(), Error>) -> Result<(), Error> {
-        if let Some(monitor) = &mut self.monitor {
-            command(monitor)?;
-            if self.lockstep {
-                crate::connection::pause(TAKING_UP);
-            }
+    /// Sends the commands that wait. In lockstep the server has sent percepts and, after a cycle
+    /// without sights, its state to the monitor: it waits for the agent, and takes up the commands
+    /// in the next cycle. That it has read them shows when it closes the connection.
+    fn send_instructions(&mut self) -> Result<(), Error> {
+        self.taking_in = self.taking_in.saturating_sub(1);
+        let percept = self.control.percept();
+        let waits = self.lockstep && (percept.has_sights || self.taking_in > 0);
+        if waits || self.instructions.is_empty() {
+            return Ok(());
         }
+        let Some(mut monitor) = self.monitor.take() else { return Ok(()) };
+        if !self.lockstep {
+            self.instructions.drain(..).try_for_each(|command| monitor.send(&command))?;
+            self.monitor = Some(monitor);
+            return Ok(());
+        }
+        monitor.wait_beyond(percept.time)?;
+        self.instructions.drain(..).try_for_each(|command| monitor.send(&command))?;
+        monitor.finish()?;
+        self.taking_in = TAKING_IN;
+        self.monitor = self.monitors.as_deref().map(Monitor::connect).transpose()?;
         Ok(())
     }
 
@@ -188,7 +234,8 @@ impl T1 {
             monitor.drain()?;
         }
         self.notice_placement();
-        self.pick_up()
+        self.pick_up();
+        self.send_instructions()
     }
 
     /// A robot that is somewhere else at once was placed by the referee, who says where.
@@ -203,20 +250,20 @@ impl T1 {
     }
 
     /// Puts a robot that has lain for a while on its feet, behind where it fell.
-    fn pick_up(&mut self) -> Result<(), Error> {
+    fn pick_up(&mut self) {
         self.lying = if self.control.is_fallen() { self.lying + 1 } else { 0 };
         if !self.pick_up || f64::from(self.lying) * CYCLE.as_secs_f64() < LYING {
-            return Ok(());
+            return;
         }
         self.lying = 0;
-        let (team, number, side) = (self.rules.team.clone(), self.rules.number, self.rules.side);
-        let (ahead, heading) = match side {
+        let (ahead, heading) = match self.rules.side {
             Side::Left => (1.0, 0.0),
             Side::Right => (-1.0, std::f64::consts::PI),
         };
         let [x, y, _] = self.true_position();
-        let place = [x - ahead * BEHIND, y, STRAIGHT_HEIGHT];
-        self.instruct(|monitor| monitor.place_robot(&team, number, place, heading))
+        let at = [x - ahead * BEHIND, y, STRAIGHT_HEIGHT];
+        let (team, number) = (self.rules.team.clone(), self.rules.number);
+        self.instruct(Command::PlaceRobot { team, number, at, heading });
     }
 
     fn cycle(&mut self, now: Timestamp) -> Result<(), Error> {

@@ -1,7 +1,7 @@
 //! A TCP connection to the server, with messages in frames.
 
 use std::io::{ErrorKind, Read, Write};
-use std::net::{TcpStream, ToSocketAddrs};
+use std::net::{Shutdown, TcpStream, ToSocketAddrs};
 use std::time::Duration;
 
 use crate::error::Error;
@@ -64,6 +64,39 @@ impl Connection {
         match self.reader.next_message()? {
             Some(message) => read(message),
             None => Err(ended("a message was lost")),
+        }
+    }
+
+    /// Waits for the next message for a time; none if it does not arrive.
+    pub(crate) fn receive_within(&mut self, time: Duration) -> Result<Option<&[u8]>, Error> {
+        self.wait(true)?;
+        self.stream.set_read_timeout(Some(time)).map_err(|error| ended(&error.to_string()))?;
+        let mut bytes = [0; 16 * 1024];
+        while !self.reader.has_message()? {
+            match self.stream.read(&mut bytes) {
+                Ok(0) => return Err(ended("the server has closed it")),
+                Ok(length) => self.reader.push(&bytes[..length]),
+                Err(error) if error.kind() == ErrorKind::Interrupted => {}
+                Err(_) => return Ok(None),
+            }
+        }
+        self.stream.set_read_timeout(Some(SILENCE)).map_err(|error| ended(&error.to_string()))?;
+        self.reader.next_message()
+    }
+
+    /// Ends the connection from here, and waits until the server has read all and closes its side.
+    pub(crate) fn finish(mut self) -> Result<(), Error> {
+        self.wait(true)?;
+        self.stream.shutdown(Shutdown::Write).map_err(|error| ended(&error.to_string()))?;
+        let mut bytes = [0; 16 * 1024];
+        loop {
+            match self.stream.read(&mut bytes) {
+                Ok(0) => return Ok(()),
+                Ok(_) => {}
+                Err(error) if error.kind() == ErrorKind::Interrupted => {}
+                Err(error) if error.kind() == ErrorKind::ConnectionReset => return Ok(()),
+                Err(error) => return Err(ended(&error.to_string())),
+            }
         }
     }
 

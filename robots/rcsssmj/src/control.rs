@@ -10,7 +10,8 @@ use narukom::Timestamp;
 use crate::anatomy::{self, CYCLE_SECONDS, HEAD_PITCH, HEAD_YAW, JOINTS, LEFT_LEG};
 use crate::effector::{Effectors, MotorCommand};
 use crate::inertia::Inertia;
-use crate::kinematics::{Stance, inclination, seen_in_torso};
+use crate::kick::{Kick, KickParameters};
+use crate::kinematics::{Foot, Stance, inclination, seen_in_torso};
 use crate::match_rules::MatchRules;
 use crate::percept::{Percept, Sight};
 use crate::walk::{Gait, Motion, Motors, Ramp, WalkEngine, WalkVelocity};
@@ -19,10 +20,6 @@ use crate::walk::{Gait, Motion, Motors, Ramp, WalkEngine, WalkVelocity};
 const LYING: f64 = 1.0;
 /// A torso that is less inclined than this is upright, rad.
 const UPRIGHT: f64 = 0.4;
-/// How far the robot runs for a kick, m.
-const RUN: f64 = 1.4;
-/// How long it stands after a kick before the skill is over, s: it comes to a halt.
-const HALT: f64 = 0.6;
 /// Torque per angle and per angular velocity of a joint of a leg, and of another one, that is
 /// commanded by itself with a stiffness of 1.
 const GAINS: [(f64, f64); 2] = [(200.0, 5.0), (20.0, 1.0)];
@@ -36,8 +33,8 @@ const SLACK: f64 = 2.0;
 enum Activity {
     /// It follows the walk that is commanded.
     Walking,
-    /// It runs through the ball, and then halts; seconds so far.
-    Kicking(f64),
+    /// It kicks.
+    Kicking,
     /// It lies, and waits to be put on its feet.
     Waiting,
     /// It rests, for good.
@@ -50,6 +47,8 @@ pub(crate) struct T1Control {
     gait: Gait,
     walk: Box<dyn WalkEngine>,
     ramp: Ramp,
+    kick_parameters: KickParameters,
+    kick: Option<Kick>,
     activity: Activity,
     commands: Actuators,
     skill_number: u64,
@@ -66,7 +65,7 @@ pub(crate) struct T1Control {
 }
 
 impl T1Control {
-    pub(crate) fn new(walk: Box<dyn WalkEngine>) -> T1Control {
+    pub(crate) fn new(walk: Box<dyn WalkEngine>, kick_parameters: KickParameters) -> T1Control {
         let gait = walk.gait();
         let inertia = Inertia::default();
         T1Control {
@@ -74,6 +73,8 @@ impl T1Control {
             gait,
             walk,
             ramp: Ramp::default(),
+            kick_parameters,
+            kick: None,
             activity: Activity::Walking,
             commands: Actuators::default(),
             skill_number: 0,
@@ -183,6 +184,11 @@ impl T1Control {
                     down: self.inertia.down(),
                 };
                 self.walk.advance(velocity, &motion, &mut self.motors);
+                if let Some(kick) = &mut self.kick
+                    && !kick.advance(&motion, &mut self.motors)
+                {
+                    self.end_skill();
+                }
                 self.move_head();
                 self.move_joints();
             }
@@ -198,29 +204,21 @@ impl T1Control {
     }
 
     /// The velocity to walk with; none for a robot whose joints are slack.
-    fn wanted(&mut self) -> Option<WalkVelocity> {
-        let tilt = self.tilt();
-        match &mut self.activity {
+    fn wanted(&self) -> Option<WalkVelocity> {
+        match self.activity {
             Activity::Resting | Activity::Waiting => None,
             _ if self.is_fallen => None,
             Activity::Walking => {
                 let Actuators { walk_x, walk_y, walk_turn, .. } = self.commands;
                 Some(WalkVelocity { x: walk_x, y: walk_y, turn: walk_turn })
             }
-            Activity::Kicking(seconds) => {
-                *seconds += CYCLE_SECONDS;
-                let run = RUN / self.gait.run;
-                if *seconds > run + HALT && tilt < UPRIGHT {
-                    self.end_skill();
-                    return Some(WalkVelocity::default());
-                }
-                let x = if *seconds <= run { self.gait.run } else { 0.0 };
-                Some(WalkVelocity { x, ..WalkVelocity::default() })
-            }
+            Activity::Kicking => Some(WalkVelocity::default()),
         }
     }
 
+    /// Ends a kick, or the time in which the robot waits.
     fn end_skill(&mut self) {
+        self.kick = None;
         self.skill_done = self.skill_number;
         self.activity = Activity::Walking;
     }
@@ -259,7 +257,9 @@ impl T1Control {
         self.skill_number = number;
         self.activity = match (self.activity, skill) {
             (Activity::Walking, Skill::KickLeft | Skill::KickRight) if !self.is_fallen => {
-                Activity::Kicking(0.0)
+                let foot = if skill == Skill::KickLeft { Foot::Left } else { Foot::Right };
+                self.kick = Some(Kick::new(self.kick_parameters, foot));
+                Activity::Kicking
             }
             (Activity::Walking, Skill::StandUp) if self.is_fallen => Activity::Waiting,
             (Activity::Walking, _) => {
@@ -297,7 +297,7 @@ impl T1Control {
             Activity::Waiting => Posture::StandingUp,
             _ if self.is_fallen => Posture::Fallen,
             Activity::Resting => Posture::Sitting,
-            Activity::Kicking(_) => Posture::Busy,
+            Activity::Kicking => Posture::Busy,
             Activity::Walking if self.tilt() > UPRIGHT => Posture::Busy,
             Activity::Walking if self.ramp.velocity() != WalkVelocity::default() => Posture::Walking,
             Activity::Walking => Posture::Standing,

@@ -4,15 +4,15 @@
 //! level frame has the same origin and heading, but its z axis is vertical. The robot frame has its
 //! origin on the ground below the middle between the hips.
 
-use nalgebra::{Point3, Rotation3, Unit, UnitQuaternion, Vector3};
+use nalgebra::{Isometry3, Point3, Rotation3, Unit, UnitQuaternion, Vector3};
 
-use crate::anatomy::{HEAD_PITCH, HEAD_YAW, JointValues, LEFT_LEG, RIGHT_LEG, SOLE, link};
+use crate::anatomy::{HEAD_PITCH, HEAD_YAW, JOINTS, JointValues, LEFT_LEG, RIGHT_LEG, SOLE, link};
 use crate::percept::Polar;
 
 /// From the pitch joint of the head to the camera, m.
 const CAMERA: Vector3<f64> = Vector3::new(0.05, 0.0, 0.12);
 /// The middle between the hips in the torso frame, m.
-const HIPS: Point3<f64> = Point3::new(0.0625, 0.0, -0.1155);
+pub(crate) const HIPS: Point3<f64> = Point3::new(0.0625, 0.0, -0.1155);
 
 /// A foot.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -34,7 +34,7 @@ impl Foot {
 }
 
 /// A point in the frame of a joint, in the torso frame.
-fn in_torso(point: Point3<f64>, joint: usize, angles: &JointValues) -> Point3<f64> {
+pub(crate) fn in_torso(point: Point3<f64>, joint: usize, angles: &JointValues) -> Point3<f64> {
     let (offset, axis, parent) = link(joint);
     let axis = Unit::new_unchecked(Vector3::from(axis));
     let turned = Rotation3::from_axis_angle(&axis, angles[joint]) * point + Vector3::from(offset);
@@ -44,9 +44,87 @@ fn in_torso(point: Point3<f64>, joint: usize, angles: &JointValues) -> Point3<f6
     }
 }
 
+/// Where the axis of a joint is fixed to the link before it, in the torso frame.
+pub fn joint_origin(joint: usize, angles: &JointValues) -> Point3<f64> {
+    in_torso(Point3::origin(), joint, angles)
+}
+
+/// The camera in the torso frame.
+pub fn camera(angles: &JointValues) -> Point3<f64> {
+    in_torso(Point3::from(CAMERA), HEAD_PITCH, angles)
+}
+
 /// The middle of a sole in the torso frame.
 pub fn sole(foot: Foot, angles: &JointValues) -> Point3<f64> {
     in_torso(Point3::new(0.0, 0.0, -SOLE), foot.last_joint(), angles)
+}
+
+/// From the middle between the hips to the pitch joint of the left one, and to its foot in a straight
+/// stand, m.
+pub(crate) const BESIDE: f64 = 0.106;
+/// From the pitch joint of the hip to the knee, and from there to the pitch joint of the ankle, m.
+const THIGH: f64 = 0.236_269_1;
+const SHANK: f64 = 0.28;
+/// The angle by which the line from the hip to the knee leans back when the joints are at zero, rad.
+const THIGH_ANGLE: f64 = 0.059_289_2;
+/// Rounds in which the place of a sole is approached: the axes of hip and ankle do not meet.
+const ROUNDS: usize = 5;
+
+/// The pose of a sole in the torso frame.
+pub fn sole_pose(foot: Foot, angles: &JointValues) -> Isometry3<f64> {
+    let mut pose = Isometry3::translation(0.0, 0.0, -SOLE);
+    let mut joint = Some(foot.last_joint());
+    while let Some(index) = joint {
+        let (offset, axis, parent) = link(index);
+        let turned = UnitQuaternion::new(Vector3::from(axis) * angles[index]);
+        pose = Isometry3::from_parts(Vector3::from(offset).into(), turned) * pose;
+        joint = parent;
+    }
+    pose
+}
+
+/// The angles of the six joints of a leg that bring its sole to a pose in the torso frame, with the
+/// waist at zero. A sole that is farther away than the leg is long is approached with a straight
+/// knee.
+///
+/// The closed form is that of a leg whose axes meet in hip and ankle (Kajita, Hirukawa, Harada,
+/// Yokoi, *Introduction to Humanoid Robotics*, 2014, section 2.5.3); what the axes of this robot
+/// are apart is made up for in further rounds.
+pub fn leg_angles(foot: Foot, sole: &Isometry3<f64>) -> [f64; 6] {
+    let first = foot.last_joint() - 5;
+    let mut angles = [0.0; JOINTS];
+    let mut target = *sole;
+    for round in 0..ROUNDS {
+        angles[first..first + 6].copy_from_slice(&closed_form(foot, &target));
+        if round + 1 < ROUNDS {
+            let missed = sole.translation.vector - sole_pose(foot, &angles).translation.vector;
+            target.translation.vector += missed;
+        }
+    }
+    std::array::from_fn(|joint| angles[first + joint])
+}
+
+fn closed_form(foot: Foot, sole: &Isometry3<f64>) -> [f64; 6] {
+    let side = if foot == Foot::Left { 1.0 } else { -1.0 };
+    let hip = HIPS + Vector3::new(0.0, side * BESIDE, 0.0);
+    let ankle = sole * Point3::new(0.0, 0.0, SOLE);
+    // From the ankle to the hip, in the frame of the foot.
+    let leg = sole.rotation.inverse() * (hip - ankle);
+    let bend = (leg.norm_squared() - THIGH * THIGH - SHANK * SHANK) / (2.0 * THIGH * SHANK);
+    let bend = libm::acos(bend.clamp(-1.0, 1.0));
+    let (sin, cos) = libm::sincos(bend);
+    let knee = bend + THIGH_ANGLE;
+    let ankle_roll = libm::atan2(leg.y, leg.z);
+    let ankle_pitch =
+        -libm::atan2(THIGH * sin, SHANK + THIGH * cos) - libm::atan2(leg.x, libm::hypot(leg.y, leg.z));
+    let hip = sole.rotation
+        * UnitQuaternion::new(Vector3::new(-ankle_roll, 0.0, 0.0))
+        * UnitQuaternion::new(Vector3::new(0.0, -ankle_pitch - knee, 0.0));
+    let hip = hip.to_rotation_matrix();
+    let hip_roll = libm::asin((-hip[(1, 2)]).clamp(-1.0, 1.0));
+    let hip_pitch = libm::atan2(hip[(0, 2)], hip[(2, 2)]);
+    let hip_yaw = libm::atan2(hip[(1, 0)], hip[(1, 1)]);
+    [hip_pitch, hip_roll, hip_yaw, knee, ankle_pitch, ankle_roll]
 }
 
 /// The corners of a sole below the last joint of the leg, m: those of the foot's box.
@@ -131,8 +209,10 @@ pub fn inclination(down: &Vector3<f64>) -> (f64, f64) {
 mod tests {
     use std::f64::consts::FRAC_PI_2;
 
+    use proptest::prelude::*;
+
     use super::*;
-    use crate::anatomy::{JOINTS, STRAIGHT_HEIGHT};
+    use crate::anatomy::STRAIGHT_HEIGHT;
 
     const STRAIGHT: JointValues = [0.0; JOINTS];
 
@@ -153,6 +233,27 @@ mod tests {
         let lifted = sole(Foot::Left, &angles);
         assert!((lifted.z - (-STRAIGHT_HEIGHT + 0.322)).abs() < 1e-3 && lifted.x < -0.25, "{lifted}");
         assert!(Stance::new(&angles, &-Vector3::z()).contact() >= 4, "the right foot stands");
+    }
+
+    proptest! {
+        #[test]
+        fn the_angles_of_a_leg_lead_to_the_pose_of_its_sole(
+            ahead in -0.12..0.12, left in -0.08..0.08, down in 0.44..0.53_f64,
+            roll in -0.15..0.15, pitch in -0.2..0.2, yaw in -0.5..0.5,
+        ) {
+            for (foot, side) in [(Foot::Left, 1.0), (Foot::Right, -1.0)] {
+                let place = HIPS + Vector3::new(ahead, side * BESIDE + left, -down);
+                let turned = UnitQuaternion::from_euler_angles(roll, pitch, yaw);
+                let sole = Isometry3::from_parts(place.into(), turned);
+                let mut angles = STRAIGHT;
+                let first = foot.last_joint() - 5;
+                angles[first..first + 6].copy_from_slice(&leg_angles(foot, &sole));
+                let reached = sole_pose(foot, &angles);
+                prop_assert!((reached.translation.vector - sole.translation.vector).norm() < 1e-4);
+                prop_assert!(reached.rotation.angle_to(&sole.rotation) < 1e-9);
+                prop_assert!((sole_pose(foot, &angles).translation.vector - super::sole(foot, &angles).coords).norm() < 1e-12);
+            }
+        }
     }
 
     /// The ball of the server's own example: 5 m ahead of a straight stand, on the ground.

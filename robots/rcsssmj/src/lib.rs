@@ -8,17 +8,17 @@
 //!
 //! The commands in the plane, which all bodies have, become commands to motors here. A
 //! [`WalkEngine`](walk::WalkEngine) turns velocities into steps: [`SineWalk`] is the project's own,
-//! [`PolicyWalk`] a network whose weights are loaded from a file. Odometry follows from the foot on
-//! the ground by the [`kinematics`] of the legs and from the gyroscope, the inclination of the
-//! torso from gyroscope and accelerometer ([`Inertia`]). The true pose that the server sends is
+//! [`PolicyWalk`] a network whose weights are loaded from a file. A [`Kick`] is a motion from a
+//! stand. The example `motion_search` finds the numbers of walk and kick. Odometry follows from the
+//! foot on the ground by the [`kinematics`] of the legs and from the gyroscope, the inclination of
+//! the torso from gyroscope and accelerometer ([`Inertia`]). The true pose that the server sends is
 //! used to notice that the referee has placed the robot, and for nothing else that players see.
 //!
 //! # Limits
 //!
-//! A kick is a run through the ball, and the robot cannot stand up: it waits until the referee puts
-//! it on its feet, or the monitor where the option `pick_up` allows it. It has no radio: messages
-//! of the server have ten bytes. Marks of the lines are read but not reported, since
-//! [`monas_robot::Sightings`] has none.
+//! The robot cannot stand up: it waits until the referee puts it on its feet, or the monitor where
+//! the option `pick_up` allows it. It has no radio: messages of the server have ten bytes. Marks of
+//! the lines are read but not reported, since [`monas_robot::Sightings`] has none.
 //!
 //! ```
 //! use monas_rcsssmj::percept::{Percept, PlayMode};
@@ -29,6 +29,7 @@
 //! # Ok::<(), monas_rcsssmj::Error>(())
 //! ```
 
+mod admission;
 mod anatomy;
 mod body;
 mod connection;
@@ -38,14 +39,18 @@ mod error;
 pub mod expression;
 pub mod frame;
 mod inertia;
+mod kick;
 pub mod kinematics;
 mod limits;
+mod mass;
 mod match_rules;
 pub mod monitor;
 mod options;
+mod parameters;
 pub mod percept;
 mod policy;
 mod server;
+mod sine_parameters;
 mod sine_walk;
 pub mod walk;
 
@@ -55,10 +60,13 @@ pub use anatomy::{JOINTS, JointValues};
 pub use body::T1;
 pub use error::{Error, ErrorKind};
 pub use inertia::Inertia;
+pub use kick::{Kick, KickParameters};
+pub use mass::{centre_of_mass, mass};
 pub use match_rules::FieldSize;
 pub use policy::PolicyWalk;
 pub use server::Server;
-pub use sine_walk::{SineParameters, SineWalk};
+pub use sine_parameters::SineParameters;
+pub use sine_walk::SineWalk;
 
 monas_robot::body_kind!(BodyKind {
     name: "rcsssmj",

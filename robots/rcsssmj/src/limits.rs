@@ -1,14 +1,12 @@
 //! What a T1 on the server cannot do.
 
-use monas_robot::topics::{ACTUATORS, BATTERY, CONTACTS, HEARD, LEDS, SAID, SIGHTINGS, SONAR};
+use monas_robot::topics::{BATTERY, CONTACTS, HEARD, LEDS, SAID, SIGHTINGS, SONAR};
 use monas_robot::{BodyLimit, BodySettings, Skill};
 
 use crate::options::Options;
 
 /// What is limited, whichever way the robot walks.
-const ALWAYS: [BodyLimit; 13] = [
-    BodyLimit::skill(Skill::KickLeft, RUN_THROUGH),
-    BodyLimit::skill(Skill::KickRight, RUN_THROUGH),
+const ALWAYS: [BodyLimit; 11] = [
     BodyLimit::skill(Skill::FallLeft, NO_MOTION),
     BodyLimit::skill(Skill::FallRight, NO_MOTION),
     BodyLimit::skill(Skill::DiveLeft, NO_MOTION),
@@ -22,15 +20,12 @@ const ALWAYS: [BodyLimit; 13] = [
     BodyLimit::topic(LEDS.path(), "the robot has no LEDs"),
 ];
 
-const RUN_THROUGH: &str = "a kick is a run through the ball, which rolls 1 to 5 m";
 const NO_MOTION: &str = "the skill is over at once, without a motion";
 const NO_RADIO: &str = "the robot has no radio: messages of the server have ten bytes";
 
 const LIES: BodyLimit = BodyLimit::skill(Skill::StandUp, "a robot that lies waits for the referee");
 const PICKED_UP: BodyLimit =
     BodyLimit::skill(Skill::StandUp, "a robot that lies is put on its feet by the monitor");
-const OWN_WALK: BodyLimit =
-    BodyLimit::topic(ACTUATORS.path(), "the own walk goes neither backwards nor to a side");
 
 /// What a robot with these settings cannot do.
 pub(crate) fn limits(settings: &BodySettings) -> Vec<BodyLimit> {
@@ -38,8 +33,5 @@ pub(crate) fn limits(settings: &BodySettings) -> Vec<BodyLimit> {
     // Wrong options are errors of their own when the body is opened.
     let Ok(options) = Options::of(&settings.options) else { return limits };
     limits.push(if options.pick_up { PICKED_UP } else { LIES });
-    if options.policy.is_none() {
-        limits.push(OWN_WALK);
-    }
     limits
 }

@@ -1,6 +1,6 @@
 //! The monitor of the server: the hand of the referee and of those who set up a trial.
 
-use std::fmt::Write;
+use std::fmt::{Display, Formatter, Write};
 
 use crate::connection::Connection;
 use crate::error::Error;
@@ -61,6 +61,49 @@ impl MonitoredGame {
     }
 }
 
+/// A command of a monitor.
+#[derive(Clone, PartialEq, Debug)]
+pub enum Command {
+    /// Gives a team the kick-off.
+    KickOff(Side),
+    /// Lets the game go on where the ball lies.
+    DropBall,
+    /// Puts the ball to a place, m, with a velocity, m/s.
+    PlaceBall {
+        /// The middle of the ball.
+        at: [f64; 3],
+        /// Its velocity.
+        velocity: [f64; 3],
+    },
+    /// Puts a robot upright to a place, with all its joints at zero.
+    PlaceRobot {
+        /// The name of its team.
+        team: String,
+        /// Its number.
+        number: u32,
+        /// The origin of its torso, m.
+        at: [f64; 3],
+        /// Where it faces, rad.
+        heading: f64,
+    },
+}
+
+impl Display for Command {
+    fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Command::KickOff(side) => write!(f, "(kickOff {side:?})"),
+            Command::DropBall => write!(f, "(dropBall)"),
+            Command::PlaceBall { at: [x, y, z], velocity: [vx, vy, vz] } => {
+                write!(f, "(ball (pos {x} {y} {z}) (vel {vx} {vy} {vz}))")
+            }
+            Command::PlaceRobot { team, number, at: [x, y, z], heading } => {
+                let heading = heading.to_degrees();
+                write!(f, "(agent (unum {number}) (team {team}) (move {x} {y} {z} {heading}))")
+            }
+        }
+    }
+}
+
 /// A connection to the port for monitors.
 ///
 /// The server sends the scene in every second cycle and does not stop for a monitor that does not
@@ -69,7 +112,7 @@ impl MonitoredGame {
 pub struct Monitor {
     connection: Connection,
     game: MonitoredGame,
-    command: String,
+    text: String,
 }
 
 impl Monitor {
@@ -79,7 +122,7 @@ impl Monitor {
     /// Nothing answers there.
     pub fn connect(address: &str) -> Result<Monitor, Error> {
         let connection = Connection::open(address)?;
-        Ok(Monitor { connection, game: MonitoredGame::default(), command: String::new() })
+        Ok(Monitor { connection, game: MonitoredGame::default(), text: String::new() })
     }
 
     /// Waits for the first message: the server makes its cycles.
@@ -99,50 +142,30 @@ impl Monitor {
         Ok(*game)
     }
 
-    /// Gives a team the kick-off.
+    /// Sends a command.
     ///
     /// # Errors
     /// The connection has ended.
-    pub fn kick_off(&mut self, side: Side) -> Result<(), Error> {
-        self.send(format_args!("(kickOff {side:?})"))
-    }
-
-    /// Lets the game go on where the ball lies.
-    ///
-    /// # Errors
-    /// The connection has ended.
-    pub fn drop_ball(&mut self) -> Result<(), Error> {
-        self.send(format_args!("(dropBall)"))
-    }
-
-    /// Puts the ball to a place, m, with a velocity, m/s.
-    ///
-    /// # Errors
-    /// The connection has ended.
-    pub fn place_ball(&mut self, [x, y, z]: [f64; 3], [vx, vy, vz]: [f64; 3]) -> Result<(), Error> {
-        self.send(format_args!("(ball (pos {x} {y} {z}) (vel {vx} {vy} {vz}))"))
-    }
-
-    /// Puts a robot upright to a place, m, with a heading, rad. Its joints are all at zero then.
-    ///
-    /// # Errors
-    /// The connection has ended.
-    pub fn place_robot(
-        &mut self,
-        team: &str,
-        number: u32,
-        [x, y, z]: [f64; 3],
-        heading: f64,
-    ) -> Result<(), Error> {
-        let heading = heading.to_degrees();
-        self.send(format_args!("(agent (unum {number}) (team {team}) (move {x} {y} {z} {heading}))"))
-    }
-
-    fn send(&mut self, command: std::fmt::Arguments<'_>) -> Result<(), Error> {
-        self.command.clear();
+    pub fn send(&mut self, command: &Command) -> Result<(), Error> {
+        self.text.clear();
         // Writing into a string does not fail.
-        let _ = self.command.write_fmt(command);
-        self.connection.send(self.command.as_bytes())
+        let _ = write!(self.text, "{command}");
+        self.connection.send(self.text.as_bytes())
+    }
+
+    /// Waits for the state after a time of the server, s.
+    pub(crate) fn wait_beyond(&mut self, time: f64) -> Result<(), Error> {
+        // Both times are cut off after two digits.
+        while self.game.time < time + 0.005 {
+            let game = &mut self.game;
+            self.connection.receive(|message| game.decode(message))?;
+        }
+        Ok(())
+    }
+
+    /// Ends the connection, once the server has taken in all commands: it closes its side then.
+    pub(crate) fn finish(self) -> Result<(), Error> {
+        self.connection.finish()
     }
 }
 
@@ -187,10 +210,15 @@ mod tests {
         while monitor.drain().unwrap().left_score == 0 {
             std::thread::yield_now();
         }
-        monitor.kick_off(Side::Right).unwrap();
-        monitor.drop_ball().unwrap();
-        monitor.place_ball([1.0, -2.0, 0.11], [0.5, 0.0, 0.0]).unwrap();
-        monitor.place_robot("Monas", 2, [-1.5, 0.0, 0.7], std::f64::consts::PI).unwrap();
+        let (at, heading) = ([-1.5, 0.0, 0.7], std::f64::consts::PI);
+        for command in [
+            Command::KickOff(Side::Right),
+            Command::DropBall,
+            Command::PlaceBall { at: [1.0, -2.0, 0.11], velocity: [0.5, 0.0, 0.0] },
+            Command::PlaceRobot { team: "Monas".into(), number: 2, at, heading },
+        ] {
+            monitor.send(&command).unwrap();
+        }
         let mut expected = Vec::new();
         for command in [
             "(kickOff Right)",

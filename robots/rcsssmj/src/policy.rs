@@ -188,7 +188,7 @@ fn elu(value: &mut f32) {
 
 impl WalkEngine for PolicyWalk {
     fn gait(&self) -> Gait {
-        Gait { x: Limits::new(-0.8, 1.1), y: Limits::symmetric(0.2), turn: Limits::symmetric(1.2), run: 1.1 }
+        Gait { x: Limits::new(-0.8, 1.1), y: Limits::symmetric(0.2), turn: Limits::symmetric(1.2) }
     }
 
     fn advance(&mut self, velocity: WalkVelocity, motion: &Motion, motors: &mut Motors) {

@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
+use crate::connection::Connection;
 use crate::error::Error;
 use crate::monitor::Monitor;
 
@@ -17,7 +18,7 @@ const INSTALL: &str =
 /// How long the server may take to answer: Python and the physics are loaded first.
 const STARTING: Duration = Duration::from_secs(90);
 /// The pause between two attempts to connect.
-const RETRY: Duration = Duration::from_millis(100);
+const RETRY: Duration = Duration::from_millis(5);
 
 /// A running server; it ends with this value.
 #[derive(Debug)]
@@ -79,12 +80,25 @@ impl Server {
 
     /// A monitor of the server, once it makes its cycles. Version 0.2.1 ends with an error when an
     /// agent joins in the first one.
+    ///
+    /// # Errors
+    /// The server has ended, or does not answer.
+    pub fn monitor(&mut self) -> Result<Monitor, Error> {
+        self.answer(|server| Monitor::connect(&server.monitors).and_then(Monitor::begun))
+    }
+
+    /// A connection for an agent, once the server listens.
+    pub(crate) fn agent(&mut self) -> Result<Connection, Error> {
+        self.answer(|server| Connection::open(&server.agents))
+    }
+
+    /// Connects as soon as the server answers.
     #[expect(clippy::disallowed_methods, reason = "waits for another process, before the run begins")]
-    pub(crate) fn monitor(&mut self) -> Result<Monitor, Error> {
+    fn answer<T>(&mut self, connect: impl Fn(&Server) -> Result<T, Error>) -> Result<T, Error> {
         let begun = Instant::now();
         loop {
-            match Monitor::connect(&self.monitors).and_then(Monitor::begun) {
-                Ok(monitor) => return Ok(monitor),
+            match connect(self) {
+                Ok(connection) => return Ok(connection),
                 Err(error) if begun.elapsed() > STARTING => return Err(error),
                 Err(_) => {}
             }

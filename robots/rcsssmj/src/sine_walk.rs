@@ -1,239 +1,151 @@
-//! The project's own walk: sines without a model of balance.
+//! The project's own walk: steps by sines of one clock, and feedback of balance.
 
-use std::f64::consts::TAU;
-use std::path::Path;
+use std::f64::consts::{PI, TAU};
 
 use monas_robot::Limits;
-use toml::de::{DeTable, DeValue};
+use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 
 use crate::anatomy::{
     CYCLE_SECONDS, JOINTS, JointValues, LEFT_LEG, LEFT_SHOULDER_ROLL, RIGHT_LEG, RIGHT_SHOULDER_ROLL, limits,
 };
 use crate::effector::MotorCommand;
-use crate::error::Error;
+use crate::kinematics::{BESIDE, Foot, HIPS, inclination, leg_angles};
+use crate::sine_parameters::SineParameters;
 use crate::walk::{Gait, Motion, Motors, WalkEngine, WalkVelocity};
 
-/// The numbers of a walk, as its file names them.
-#[derive(Clone, Copy, PartialEq, Debug, Default)]
-pub struct SineParameters {
-    /// Pairs of steps in a second.
-    pub frequency: f64,
-    /// Pitch of the hips in a stand, forwards, rad.
-    pub crouch: f64,
-    /// Angle of the knees in a stand, in parts of the crouch.
-    pub knee: f64,
-    /// Added to the pitch of the ankles, rad.
-    pub lean: f64,
-    /// By how much a swinging leg bends in addition, rad.
-    pub lift: f64,
-    /// Amplitude of the hips' pitch at full speed, rad.
-    pub stride: f64,
-    /// Phase of the stride after the lift, rad.
-    pub phase: f64,
-    /// Amplitude of the hips' roll, rad.
-    pub sway: f64,
-    /// Amplitude of the ankles' roll, rad.
-    pub ankle_sway: f64,
-    /// Ankle pitch for each rad/s of the torso's pitch, s.
-    pub gyro_pitch: f64,
-    /// Ankle roll for each rad/s of the torso's roll, s.
-    pub gyro_roll: f64,
-    /// Amplitude of the hips' yaw at full turn, rad.
-    pub turn: f64,
-    /// Speed ahead at full stride, m/s.
-    pub speed: f64,
-    /// Speed ahead of steps without a stride, m/s: the robot leans forwards.
-    pub drift: f64,
-    /// The slowest steps ahead, m/s: slower ones make the robot fall.
-    pub slowest: f64,
-    /// Rate at full turn, rad/s.
-    pub turn_rate: f64,
-    /// Torque per angle and per angular velocity of the legs.
-    pub leg_gains: [f64; 2],
-    /// The same of the other joints.
-    pub other_gains: [f64; 2],
-}
-
-/// The file of the walk that is used without another.
-const OWN: &str = include_str!("../walk.toml");
-
-impl SineParameters {
-    /// The parameters that the project brings.
-    ///
-    /// # Errors
-    /// None, unless its file was changed to one without meaning.
-    pub fn own() -> Result<SineParameters, Error> {
-        SineParameters::parse(OWN).map_err(Error::configuration)
-    }
-
-    /// Reads a file of parameters. All of them have to be there.
-    ///
-    /// # Errors
-    /// The file cannot be read, a parameter is missing, unknown, or out of its range.
-    pub fn load(path: &Path) -> Result<SineParameters, Error> {
-        let named = |what: String| Error::configuration(format!("the walk {}: {what}", path.display()));
-        let text = std::fs::read_to_string(path).map_err(|error| named(error.to_string()))?;
-        SineParameters::parse(&text).map_err(named)
-    }
-
-    fn parse(text: &str) -> Result<SineParameters, String> {
-        let table = DeTable::parse(text).map_err(|error| error.to_string())?;
-        let value = |name: &str| table.get_ref().get(name).map(|value| value.get_ref());
-        let mut walk = SineParameters::default();
-        let known = walk.numbers().map(|(name, ..)| name);
-        if let Some(unknown) = table.get_ref().keys().find(|name| {
-            let name: &str = name.get_ref();
-            !known.contains(&name) && !GAINS.contains(&name)
-        }) {
-            return Err(format!("there is no parameter `{}`", unknown.get_ref()));
-        }
-        for (name, number, least, most) in walk.numbers() {
-            *number = in_range(value(name), least, most).map_err(|what| format!("`{name}` {what}"))?;
-        }
-        for (name, gains) in GAINS.into_iter().zip([&mut walk.leg_gains, &mut walk.other_gains]) {
-            let Some(DeValue::Array(pair)) = value(name) else {
-                return Err(format!("`{name}` needs two numbers"));
-            };
-            if pair.len() != gains.len() {
-                return Err(format!("`{name}` needs two numbers"));
-            }
-            for (gain, value) in gains.iter_mut().zip(pair.iter()) {
-                *gain = in_range(Some(value.get_ref()), 0.0, 1000.0)
-                    .map_err(|what| format!("`{name}` {what}"))?;
-            }
-        }
-        match walk.speed > walk.drift {
-            true => Ok(walk),
-            false => Err("`speed` has to be more than `drift`".into()),
-        }
-    }
-
-    /// All single numbers with their names and ranges.
-    fn numbers(&mut self) -> [(&'static str, &mut f64, f64, f64); 16] {
-        [
-            ("frequency", &mut self.frequency, 0.1, 10.0),
-            ("crouch", &mut self.crouch, 0.0, 1.0),
-            ("knee", &mut self.knee, 1.0, 3.0),
-            ("lean", &mut self.lean, -0.5, 0.5),
-            ("lift", &mut self.lift, 0.0, 1.0),
-            ("stride", &mut self.stride, 0.0, 1.0),
-            ("phase", &mut self.phase, -TAU, TAU),
-            ("sway", &mut self.sway, 0.0, 0.4),
-            ("ankle_sway", &mut self.ankle_sway, 0.0, 0.4),
-            ("gyro_pitch", &mut self.gyro_pitch, -1.0, 1.0),
-            ("gyro_roll", &mut self.gyro_roll, -1.0, 1.0),
-            ("turn", &mut self.turn, 0.0, 1.0),
-            ("speed", &mut self.speed, 0.01, 5.0),
-            ("drift", &mut self.drift, 0.0, 5.0),
-            ("slowest", &mut self.slowest, 0.0, 5.0),
-            ("turn_rate", &mut self.turn_rate, 0.01, 5.0),
-        ]
-    }
-}
-
-/// The parameters with two numbers.
-const GAINS: [&str; 2] = ["leg_gains", "other_gains"];
-
-fn in_range(value: Option<&DeValue<'_>>, least: f64, most: f64) -> Result<f64, String> {
-    let text = match value {
-        Some(DeValue::Float(number)) => number.as_str(),
-        Some(DeValue::Integer(number)) => number.as_str(),
-        Some(other) => return Err(format!("is no number but a {}", other.type_str())),
-        None => return Err("is missing".into()),
-    };
-    match text.parse() {
-        Ok(number) if (least..=most).contains(&number) => Ok(number),
-        _ => Err(format!("is {text}, expected {least} to {most}")),
-    }
-}
-
-/// A walk in which each joint of the legs follows a sine of one clock. The gyroscope moves the
-/// ankles; there is no other feedback of balance. It turns by the yaw of the hips and walks neither
-/// to a side nor backwards.
+/// A walk in which the ankles follow sines of one clock relative to the hips.
+///
+/// The angles of a leg follow from the place of its ankle. Inclination and angular velocity of the
+/// torso move ankles and hips, and lengthen the strides to the side to which the robot falls.
 #[derive(Clone, Debug)]
 pub struct SineWalk {
     parameters: SineParameters,
-    /// Where it is in a pair of steps, rad.
+    /// Where it is in a pair of steps, rad; the left foot swings in the first half.
     clock: f64,
-    /// How far the robot has gone into its crouch, and how far the steps are lifted: 0 to 1.
+    /// How far the robot has gone into its crouch, and how far the steps have grown: 0 to 1.
     crouched: f64,
     stepping: f64,
+    velocity: WalkVelocity,
     /// Seconds since the last command that was not to stand.
     still: f64,
 }
 
-/// The times in which the robot goes into its crouch and begins or ends its steps, s.
+/// The time in which the robot goes into its crouch, s.
 const CROUCHING: f64 = 0.4;
-const STARTING: f64 = 0.6;
-/// How long the robot takes slow steps before it stands, s: it has to lose its speed.
+/// How long the robot steps on the spot before it stands, s: it has to lose its speed.
 const SLOWING: f64 = 1.2;
 /// Roll of the shoulders beside the body, rad: the arms hang.
 const ARMS: f64 = 1.35;
+/// The greatest correction of the speed by the feedback of balance, m/s.
+const CORRECTION: f64 = 0.5;
 
 impl SineWalk {
     /// A walk with parameters, for a robot that stands.
     pub fn new(parameters: SineParameters) -> SineWalk {
-        SineWalk { parameters, clock: 0.0, crouched: 0.0, stepping: 0.0, still: SLOWING }
+        SineWalk {
+            parameters,
+            clock: 0.0,
+            crouched: 0.0,
+            stepping: 0.0,
+            velocity: WalkVelocity::default(),
+            still: SLOWING,
+        }
     }
 
-    fn step(&mut self, velocity: WalkVelocity) {
+    fn step(&mut self, wanted: WalkVelocity) {
+        let walk = &self.parameters;
         self.crouched = (self.crouched + CYCLE_SECONDS / CROUCHING).min(1.0);
-        let moves = velocity != WalkVelocity::default();
+        let moves = wanted != WalkVelocity::default();
         self.still = if moves { 0.0 } else { self.still + CYCLE_SECONDS };
         let steps = self.crouched >= 1.0 && self.still < SLOWING;
-        let change = CYCLE_SECONDS / STARTING;
+        let change = CYCLE_SECONDS / walk.starting;
         self.stepping = (self.stepping + if steps { change } else { -change }).clamp(0.0, 1.0);
         self.clock = match self.stepping > 0.0 {
-            true => libm::fmod(self.clock + TAU * self.parameters.frequency * CYCLE_SECONDS, TAU),
+            true => libm::fmod(self.clock + TAU * walk.frequency * CYCLE_SECONDS, TAU),
             false => 0.0,
         };
+        // Strides grow after the steps have, and are gone before those end.
+        let wanted = if self.stepping >= 1.0 { wanted } else { WalkVelocity::default() };
+        let linear = walk.acceleration * CYCLE_SECONDS;
+        let angular = walk.turn_acceleration * CYCLE_SECONDS;
+        let WalkVelocity { x, y, turn } = &mut self.velocity;
+        *x += (wanted.x - *x).clamp(-linear, linear);
+        *y += (wanted.y - *y).clamp(-linear, linear);
+        *turn += (wanted.turn - *turn).clamp(-angular, angular);
     }
 
-    fn angles(&self, velocity: WalkVelocity, gyro: [f64; 3]) -> JointValues {
+    fn angles(&self, motion: &Motion) -> JointValues {
         let walk = &self.parameters;
+        let (roll, pitch) = inclination(&motion.down);
+        let [roll_rate, pitch_rate, _] = motion.gyro;
+        let pitch = pitch - walk.lean;
         let mut angles = [0.0; JOINTS];
-        let arms = ARMS * self.crouched;
-        (angles[LEFT_SHOULDER_ROLL], angles[RIGHT_SHOULDER_ROLL]) = (-arms, arms);
-        let lift = libm::sin(self.clock);
-        let swing = libm::cos(self.clock + walk.phase) * self.stepping;
-        // Steps on the spot are safe in a turn only; the last ones before a stand go ahead.
-        let ahead = if velocity.x > 0.0 || velocity.turn == 0.0 { velocity.x.max(walk.slowest) } else { 0.0 };
-        let stride = walk.stride * (ahead - walk.drift) / (walk.speed - walk.drift);
-        let yaw = walk.turn * velocity.turn / walk.turn_rate;
-        let crouch = walk.crouch * self.crouched;
-        for (leg, side) in [(LEFT_LEG, 1.0), (RIGHT_LEG, -1.0)] {
-            let up = (side * lift).max(0.0) * walk.lift * self.stepping;
-            let ahead = side * swing * stride;
-            angles[leg] = ahead - crouch - up;
-            angles[leg + 1] = walk.sway * lift * self.stepping;
-            angles[leg + 2] = -side * swing * yaw;
-            angles[leg + 3] = walk.knee * crouch + 2.0 * up;
-            let level = -(walk.knee - 1.0) * crouch - up - ahead;
-            angles[leg + 4] = level + walk.lean * self.crouched + walk.gyro_pitch * gyro[1];
-            angles[leg + 5] = -walk.ankle_sway * lift * self.stepping + walk.gyro_roll * gyro[0];
+        (angles[LEFT_SHOULDER_ROLL], angles[RIGHT_SHOULDER_ROLL]) = (-ARMS, ARMS);
+
+        // A foot goes ahead and back by twice its amplitude in each pair of steps.
+        let per_speed = self.stepping / (4.0 * walk.frequency);
+        let ahead =
+            (walk.step_pitch * pitch + walk.step_pitch_rate * pitch_rate).clamp(-CORRECTION, CORRECTION);
+        let right = (walk.step_roll * roll + walk.step_roll_rate * roll_rate).clamp(-CORRECTION, CORRECTION);
+        let ahead = walk.stride * (self.velocity.x + ahead - walk.drift) * per_speed;
+        let left = walk.side_stride * (self.velocity.y - right) * per_speed;
+        let yaw = walk.turn_stride * self.velocity.turn * per_speed;
+        let sway = walk.sway * libm::sin(self.clock + walk.sway_phase) * self.stepping;
+        let ankle_sway = walk.ankle_sway * libm::sin(self.clock) * self.stepping;
+        for (leg, foot, side) in [(LEFT_LEG, Foot::Left, 1.0), (RIGHT_LEG, Foot::Right, -1.0)] {
+            let clock = if foot == Foot::Left { self.clock } else { self.clock + PI };
+            let lift = (libm::sin(clock) - walk.support) / (1.0 - walk.support);
+            let lift = walk.lift * lift.max(0.0) * self.stepping;
+            let swing = swing(clock + walk.phase, walk.linear);
+            let place = Vector3::new(
+                walk.foot + ahead * swing,
+                side * (BESIDE + walk.spread) + left * swing + sway,
+                lift - walk.height,
+            );
+            let turned = UnitQuaternion::new(Vector3::new(0.0, 0.0, yaw * swing))
+                * UnitQuaternion::new(Vector3::new(0.0, -walk.lean, 0.0));
+            let sole = Isometry3::from_parts((HIPS + place).into(), turned);
+            angles[leg..leg + 6].copy_from_slice(&leg_angles(foot, &sole));
+            angles[leg] += walk.hip_pitch * pitch + walk.hip_pitch_rate * pitch_rate;
+            angles[leg + 1] += walk.hip_roll * roll + walk.hip_roll_rate * roll_rate;
+            angles[leg + 4] += walk.ankle_pitch * pitch + walk.ankle_pitch_rate * pitch_rate;
+            angles[leg + 5] += walk.ankle_roll * roll + walk.ankle_roll_rate * roll_rate - ankle_sway;
         }
-        angles
+        // From the straight stand in which a robot is placed.
+        angles.map(|angle| angle * self.crouched)
+    }
+}
+
+/// Where a foot is in its stride at a phase, from -1 to 1: it swings ahead in the first half, and
+/// goes back in the second with one speed as far as `linear` says, otherwise by a sine.
+fn swing(clock: f64, linear: f64) -> f64 {
+    let clock = libm::fmod(clock + 2.0 * TAU, TAU);
+    let sine = -libm::cos(clock);
+    match clock < PI {
+        true => sine,
+        false => sine + linear * (1.0 - 2.0 * (clock - PI) / PI - sine),
     }
 }
 
 impl WalkEngine for SineWalk {
     fn gait(&self) -> Gait {
-        let SineParameters { speed, turn_rate, .. } = self.parameters;
+        let SineParameters { forwards, backwards, sideways, turning, .. } = self.parameters;
         Gait {
-            x: Limits::new(0.0, speed),
-            y: Limits::symmetric(0.0),
-            turn: Limits::symmetric(turn_rate),
-            run: speed,
+            x: Limits::new(-backwards, forwards),
+            y: Limits::symmetric(sideways),
+            turn: Limits::symmetric(turning),
         }
     }
 
     fn advance(&mut self, velocity: WalkVelocity, motion: &Motion, motors: &mut Motors) {
         self.step(velocity);
-        let angles = self.angles(velocity, motion.gyro);
+        let angles = self.angles(motion);
+        let SineParameters { leg_stiffness, leg_damping, other_stiffness, other_damping, .. } =
+            self.parameters;
         for (joint, motor) in motors.iter_mut().enumerate() {
-            let [stiffness, damping] = match joint < LEFT_LEG {
-                true => self.parameters.other_gains,
-                false => self.parameters.leg_gains,
+            let (stiffness, damping) = match joint < LEFT_LEG {
+                true => (other_stiffness, other_damping),
+                false => (leg_stiffness, leg_damping),
             };
             let angle = limits(joint).clamp(angles[joint]);
             *motor = MotorCommand { angle, stiffness, damping, ..MotorCommand::default() };
@@ -288,18 +200,5 @@ mod tests {
         assert!(ahead.iter().all(|angles| (angles[LEFT_LEG + 3] - angles[RIGHT_LEG + 3]).abs() < 0.5));
         let stand = run(&mut walk, WalkVelocity::default(), 150);
         assert_eq!(stand[149], stand[140]);
-    }
-
-    #[test]
-    fn a_file_without_a_parameter_or_with_an_unknown_one_is_refused() {
-        let error = |text: String| SineParameters::parse(&text).unwrap_err();
-        assert_eq!(error(OWN.replace("lean =", "# lean =")), "`lean` is missing");
-        assert_eq!(error(format!("{OWN}\nhop = 1")), "there is no parameter `hop`");
-        assert_eq!(error(OWN.replace("lift = ", "lift = 7 #")), "`lift` is 7, expected 0 to 1");
-        assert_eq!(error(OWN.replace("[200.0, 5.0]", "[200.0]")), "`leg_gains` needs two numbers");
-        assert_eq!(
-            error(OWN.replace("[200.0, 5.0]", "[200.0, \"x\"]")),
-            "`leg_gains` is no number but a string"
-        );
     }
 }

@@ -42,8 +42,6 @@ pub struct Gait {
     pub y: Limits,
     /// Counterclockwise, rad/s.
     pub turn: Limits,
-    /// With which speed the robot runs through a ball, m/s.
-    pub run: f64,
 }
 
 /// Turns velocities into commands to the motors.
@@ -100,12 +98,8 @@ mod tests {
 
     #[test]
     fn a_ramp_keeps_the_limits_of_velocity_and_acceleration() {
-        let gait = Gait {
-            x: Limits::new(-0.5, 1.0),
-            y: Limits::symmetric(0.2),
-            turn: Limits::symmetric(1.0),
-            run: 1.0,
-        };
+        let gait =
+            Gait { x: Limits::new(-0.5, 1.0), y: Limits::symmetric(0.2), turn: Limits::symmetric(1.0) };
         let (mut ramp, mut before) = (Ramp::default(), WalkVelocity::default());
         let wanted = WalkVelocity { x: 9.0, y: -9.0, turn: f64::NAN };
         for _ in 0..100 {

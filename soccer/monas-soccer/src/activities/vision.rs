@@ -24,7 +24,8 @@ use crate::{GameState, convert, topics};
 ///
 /// Parameters `memory` (s): how long a ball counts as found after it was last seen;
 /// `rolling_deceleration` (m/s²) of the ball; `least_speed` (m/s) and `reach` (m): least speed, and
-/// largest lateral distance from the robot, of an approaching ball.
+/// largest lateral distance from the robot, of an approaching ball; `eye_height` (m) of the camera,
+/// `elevation_noise` and `bearing_noise` (rad): standard deviations of measured angles of the ball.
 #[derive(Clone, Debug, Default)]
 pub struct Vision {
     model: PerceptionModel,
@@ -40,6 +41,9 @@ impl Activity for Vision {
         read("least_speed", &mut self.model.least_speed);
         read("reach", &mut self.model.reach);
         read("rolling_deceleration", &mut self.model.ball.rolling_deceleration);
+        read("eye_height", &mut self.model.ball.eye_height);
+        read("elevation_noise", &mut self.model.ball.elevation_noise);
+        read("bearing_noise", &mut self.model.ball.bearing_noise);
     }
 
     fn execute(&mut self, blackboard: &mut Blackboard) -> Result<Progress, BoxError> {

@@ -1,0 +1,143 @@
+//! The search of the kick: trials in which the ball lies in slightly different places.
+
+use std::error::Error;
+
+use monas_rcsssmj::kinematics::Foot;
+use monas_rcsssmj::walk::{Motors, WalkEngine, WalkVelocity};
+use monas_rcsssmj::{Kick, KickParameters, SineParameters, SineWalk};
+use rand_core::Rng;
+use rand_pcg::Pcg32;
+
+use crate::world::{CYCLE, World};
+use crate::{Motion, Searched};
+
+/// The kick, from the stand of the project's own walk.
+pub(crate) struct Kicking {
+    pub(crate) walk: SineParameters,
+}
+
+/// Where the search begins: what an earlier one has found for one foot, rounded.
+const SEARCHED: &[Searched] = &[
+    ("ball_x", 0.21, 0.014),
+    ("ball_y", 0.1, 0.0105),
+    ("height", 0.52, 0.0105),
+    ("foot", 0.015, 0.0105),
+    ("lean", 0.028, 0.035),
+    ("shift", 0.045, 0.0105),
+    ("tilt", -0.003, 0.035),
+    ("lift", 0.15, 0.0105),
+    ("raise", 0.15, 0.014),
+    ("inward", -0.051, 0.0105),
+    ("back", 0.0, 0.028),
+    ("ahead", 0.33, 0.028),
+    ("toes", 0.22, 0.07),
+    ("twist", -0.36, 0.105),
+    ("shifting", 0.86, 0.07),
+    ("lifting", 0.15, 0.056),
+    ("swinging", 0.04, 0.021),
+    ("holding", 0.0, 0.035),
+    ("returning", 0.33, 0.056),
+    ("unshifting", 0.2, 0.07),
+    ("ankle_pitch", 1.28, 0.14),
+    ("ankle_pitch_rate", 0.072, 0.021),
+    ("hip_pitch", -0.071, 0.14),
+    ("hip_pitch_rate", 0.04, 0.014),
+    ("ankle_roll", 0.25, 0.14),
+    ("ankle_roll_rate", -0.011, 0.021),
+    ("hip_roll", 1.28, 0.14),
+    ("hip_roll_rate", 0.092, 0.014),
+];
+
+/// What is not searched.
+const FIXED: [(&str, f64); 4] = [("still", 1.2), ("blending", 0.4), ("stiffness", 200.0), ("damping", 5.0)];
+
+/// Kicks that are tried of each kick.
+const KICKS: usize = 6;
+/// By how much the place of the ball differs from that of the kick, m.
+const SPREAD: f64 = 0.03;
+/// From the torso to the middle between the hips, m.
+const HIPS: f64 = 0.0625;
+/// How long the robot stands before a kick, to twice that, s; after it the robot walks a little.
+const STANDING: f64 = 1.0;
+const ROLLING: f64 = 3.0;
+const WALKING: f64 = 2.0;
+/// The longest kick, s.
+const LONGEST: f64 = 8.0;
+/// A torso with a smaller cosine of its inclination has fallen.
+const UPRIGHT: f64 = 0.54;
+/// The distance at which a kick costs nothing, m.
+const FAR: f64 = 6.0;
+/// What a fall costs, m.
+const FALL: f64 = 6.0;
+/// What a metre to the side costs.
+const ASIDE: f64 = 1.0;
+/// What the greatest inclination costs, by 1 minus its cosine.
+const INCLINATION: f64 = 10.0;
+
+impl Motion for Kicking {
+    fn searched(&self) -> &[Searched] {
+        SEARCHED
+    }
+
+    fn cost(&self, values: &[f64], world: &mut World, chance: &mut Pcg32) -> Result<f64, Box<dyn Error>> {
+        let kick = parameters(values);
+        let mut cost = 0.0;
+        for trial in 0..KICKS {
+            // The feet differ: the masses of the legs do.
+            let (foot, side) = if trial % 2 == 0 { (Foot::Left, 1.0) } else { (Foot::Right, -1.0) };
+            let mut spread = || SPREAD * (2.0 * f64::from(chance.next_u32()) / f64::from(u32::MAX) - 1.0);
+            let ball = [HIPS + kick.ball_x + spread(), side * (kick.ball_y + spread())];
+            let standing = STANDING + STANDING * f64::from(chance.next_u32()) / f64::from(u32::MAX);
+            cost += self.trial_cost(&mut Kick::new(kick, foot), ball, standing, world)?;
+        }
+        Ok(cost / KICKS as f64)
+    }
+
+    fn file(&self, values: &[f64]) -> String {
+        parameters(values).to_toml()
+    }
+}
+
+impl Kicking {
+    fn trial_cost(
+        &self,
+        kick: &mut Kick,
+        ball: [f64; 2],
+        standing: f64,
+        world: &mut World,
+    ) -> Result<f64, Box<dyn Error>> {
+        let mut walk = SineWalk::new(self.walk);
+        let mut motors = Motors::default();
+        let mut state = world.reset(ball)?;
+        let cycles = |seconds: f64| (seconds / CYCLE) as usize;
+        let (mut inclination, mut after) = (0.0_f64, None);
+        for cycle in 0..cycles(standing + LONGEST + ROLLING) {
+            let walks = after.is_some_and(|since| cycle > since + cycles(ROLLING - WALKING));
+            let velocity = WalkVelocity { x: if walks { -0.1 } else { 0.0 }, ..WalkVelocity::default() };
+            walk.advance(velocity, &state.motion, &mut motors);
+            if cycle > cycles(standing) && after.is_none() && !kick.advance(&state.motion, &mut motors) {
+                after = Some(cycle);
+            }
+            state = world.cycle(&motors)?;
+            inclination = inclination.max(1.0 - state.upright);
+            let moved = [state.ball[0] - ball[0], state.ball[1] - ball[1]];
+            if state.upright < UPRIGHT {
+                return Ok(FALL + FAR - moved[0].clamp(0.0, FAR));
+            }
+            if after.is_some_and(|since| cycle > since + cycles(ROLLING)) {
+                break;
+            }
+        }
+        let moved = [state.ball[0] - ball[0], state.ball[1] - ball[1]];
+        Ok(FAR - moved[0].clamp(-1.0, FAR) + ASIDE * moved[1].abs() + INCLINATION * inclination)
+    }
+}
+
+fn parameters(values: &[f64]) -> KickParameters {
+    let mut kick = KickParameters::default();
+    let searched = SEARCHED.iter().map(|(name, ..)| *name).zip(values.iter().copied());
+    for (name, value) in searched.chain(FIXED) {
+        kick.set(name, value);
+    }
+    kick
+}

@@ -1,0 +1,115 @@
+//! The world of the server as a child process: its physics without its sockets.
+
+use std::error::Error;
+use std::io::{Read, Write};
+use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
+
+use monas_rcsssmj::walk::{Motion, Motors};
+use monas_rcsssmj::{Inertia, JOINTS};
+
+const PROGRAM: &str = include_str!("physics.py");
+const NUMBERS: usize = 2 * JOINTS + 6 + 5 + 2;
+/// The period of the server, s.
+pub(crate) const CYCLE: f64 = 0.02;
+
+/// Robot and ball after a cycle.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct State {
+    /// What the robot measures.
+    pub(crate) motion: Motion,
+    /// Where the torso is, m.
+    pub(crate) place: [f64; 3],
+    /// Its heading, rad.
+    pub(crate) heading: f64,
+    /// The cosine of its inclination.
+    pub(crate) upright: f64,
+    /// Where the ball is, m.
+    pub(crate) ball: [f64; 2],
+}
+
+/// A T1 and a ball.
+pub(crate) struct World {
+    process: Child,
+    commands: ChildStdin,
+    states: ChildStdout,
+    inertia: Inertia,
+    /// What was computed from the last state: the server moves the motors a cycle later.
+    motors: Motors,
+}
+
+impl World {
+    /// Starts a world.
+    pub(crate) fn new() -> Result<World, Box<dyn Error>> {
+        let mut command = Command::new("python3");
+        command
+            .args(["-c", PROGRAM])
+            .current_dir(std::env::temp_dir())
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped());
+        let mut process = command.spawn().map_err(|error| format!("python3 cannot be started: {error}"))?;
+        let (Some(commands), Some(states)) = (process.stdin.take(), process.stdout.take()) else {
+            return Err("python3 has no standard input or output".into());
+        };
+        Ok(World { process, commands, states, inertia: Inertia::default(), motors: Motors::default() })
+    }
+
+    /// Puts the robot upright at the origin, and the ball to a place.
+    pub(crate) fn reset(&mut self, ball: [f64; 2]) -> Result<State, Box<dyn Error>> {
+        (self.inertia, self.motors) = (Inertia::default(), Motors::default());
+        self.send(&[0.0, ball[0], ball[1]])?;
+        self.receive()
+    }
+
+    /// Makes a cycle; the commands have effect in the next one.
+    pub(crate) fn cycle(&mut self, motors: &Motors) -> Result<State, Box<dyn Error>> {
+        let before = std::mem::replace(&mut self.motors, *motors);
+        let mut numbers = [1.0; 1 + 3 * JOINTS];
+        for (joint, motor) in before.iter().enumerate() {
+            numbers[1 + joint] = motor.angle;
+            numbers[1 + JOINTS + joint] = motor.stiffness;
+            numbers[1 + 2 * JOINTS + joint] = motor.damping;
+        }
+        self.send(&numbers)?;
+        self.receive()
+    }
+
+    fn send(&mut self, numbers: &[f64]) -> Result<(), Box<dyn Error>> {
+        let bytes: Vec<u8> = numbers.iter().flat_map(|number| number.to_le_bytes()).collect();
+        self.commands.write_all(&bytes).and_then(|()| self.commands.flush()).map_err(ended)
+    }
+
+    fn receive(&mut self) -> Result<State, Box<dyn Error>> {
+        let mut bytes = [0; 8 * NUMBERS];
+        self.states.read_exact(&mut bytes).map_err(ended)?;
+        let (chunks, _) = bytes.as_chunks::<8>();
+        let numbers: [f64; NUMBERS] = std::array::from_fn(|index| f64::from_le_bytes(chunks[index]));
+        let three = |first: usize| [numbers[first], numbers[first + 1], numbers[first + 2]];
+        let (gyro, acceleration) = (three(2 * JOINTS), three(2 * JOINTS + 3));
+        self.inertia.advance(gyro, acceleration, CYCLE);
+        let rest = 2 * JOINTS + 6;
+        Ok(State {
+            motion: Motion {
+                positions: std::array::from_fn(|joint| numbers[joint]),
+                velocities: std::array::from_fn(|joint| numbers[JOINTS + joint]),
+                gyro,
+                down: self.inertia.down(),
+            },
+            place: three(rest),
+            heading: numbers[rest + 3],
+            upright: numbers[rest + 4],
+            ball: [numbers[rest + 5], numbers[rest + 6]],
+        })
+    }
+}
+
+impl Drop for World {
+    fn drop(&mut self) {
+        // A process that has ended already is no error.
+        let _ = self.process.kill();
+        let _ = self.process.wait();
+    }
+}
+
+fn ended(error: std::io::Error) -> Box<dyn Error> {
+    format!("the world has ended: {error}; is rcsssmj installed (`pip install rcsssmj==0.2.1`)?").into()
+}

@@ -1,0 +1,119 @@
+//! Joining a server that was just started, so that each run begins with the same state.
+//!
+//! A server without agents makes its cycles as fast as it can. In which one an agent joins depends
+//! on the computer, and with it the time of the server and the last digits of its physics. So
+//! another robot joins first and holds the server in lockstep until a certain cycle. Then the
+//! player joins, the other robot leaves, and the ball is placed anew. With the robot that leaves the
+//! server compiles its world again and forgets what its solver knew; the player goes to its place in
+//! the cycle after that. The states of two runs are equal from there on, bit for bit.
+
+use std::time::Duration;
+
+use crate::connection::{Connection, pause};
+use crate::effector::Effectors;
+use crate::error::Error;
+use crate::monitor::{Command, Monitor};
+use crate::options::Options;
+use crate::percept::Percept;
+use crate::server::Server;
+
+/// The cycle whose percepts the player receives first. Monitors receive the state after a cycle
+/// with an odd number.
+const FIRST: u64 = 1001;
+/// How often a server is started that was not joined in time.
+const ATTEMPTS: usize = 10;
+/// How long the server has to take in an agent while it waits for another one.
+const TAKING_IN: Duration = Duration::from_millis(50);
+/// How long it has to send what it has computed already.
+const SENDING: Duration = Duration::from_secs(2);
+/// The middle of a ball on the centre spot, m.
+const CENTRE: [f64; 3] = [0.0, 0.0, 0.11];
+
+/// A server with the player, which has not answered its first percepts yet.
+pub(crate) struct Admission {
+    pub(crate) server: Server,
+    pub(crate) player: Connection,
+}
+
+impl Admission {
+    /// Starts a server and joins it.
+    ///
+    /// # Errors
+    /// The server cannot be started, or it is never joined in time.
+    pub(crate) fn new(options: &Options) -> Result<Admission, Error> {
+        for _ in 0..ATTEMPTS {
+            let mut server = Server::start(options.server.as_deref(), true)?;
+            // Connected before the first cycle: the threads of a busy server wait for each other.
+            let holder = server.agent()?;
+            let monitor = server.monitor()?;
+            if let Some(player) = join(&server, holder, monitor, options)? {
+                return Ok(Admission { server, player });
+            }
+        }
+        let what = format!("the server was not joined within {FIRST} cycles, {ATTEMPTS} times");
+        Err(Error::disconnected(format!("{what}; is the computer very busy?")))
+    }
+}
+
+/// Joins in the first cycle; none if it was missed.
+fn join(
+    server: &Server,
+    mut holder: Connection,
+    mut monitor: Monitor,
+    options: &Options,
+) -> Result<Option<Connection>, Error> {
+    // A number beside the player's.
+    let number = if options.number > 1 { options.number - 1 } else { 2 };
+    init(&mut holder, &options.team, number)?;
+    let mut cycle = holder.receive(cycle)?;
+    if cycle > FIRST - 2 {
+        return Ok(None);
+    }
+    while cycle < FIRST - 2 {
+        cycle = hold(&mut holder)?;
+        monitor.drain()?;
+    }
+    let mut player = Connection::open(server.agents())?;
+    init(&mut player, &options.team, options.number)?;
+    pause(TAKING_IN);
+    // The server finds new agents when it begins a cycle, which is the one after the next.
+    hold(&mut holder)?;
+    hold(&mut holder)?;
+    let Some(message) = player.receive_within(SENDING)? else { return Ok(None) };
+    if self::cycle(message)? != FIRST {
+        return Ok(None);
+    }
+    // The server waits for the answers now, and takes up in the next cycle what arrives.
+    monitor.wait_beyond(time(FIRST))?;
+    holder.finish()?;
+    monitor.send(&Command::PlaceBall { at: CENTRE, velocity: [0.0; 3] })?;
+    monitor.finish()?;
+    Ok(Some(player))
+}
+
+fn init(agent: &mut Connection, team: &str, number: u32) -> Result<(), Error> {
+    let mut message = Effectors::default();
+    message.init("T1", team, number);
+    agent.send(message.as_bytes())
+}
+
+/// Lets the server make a cycle; returns its number.
+fn hold(agent: &mut Connection) -> Result<u64, Error> {
+    let mut message = Effectors::default();
+    message.synchronize();
+    agent.send(message.as_bytes())?;
+    agent.receive(cycle)
+}
+
+/// The number of the cycle with these percepts.
+fn cycle(message: &[u8]) -> Result<u64, Error> {
+    let mut percept = Percept::default();
+    percept.decode(message)?;
+    // The time is cut off after two digits.
+    Ok(((percept.time + 0.005) / 0.02).round() as u64)
+}
+
+/// The time at which a cycle begins, s.
+fn time(cycle: u64) -> f64 {
+    cycle as f64 * 0.02
+}

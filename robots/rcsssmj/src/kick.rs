@@ -1,0 +1,216 @@
+//! A kick from a stand: the weight goes onto one leg, and the other swings.
+
+use nalgebra::{Isometry3, UnitQuaternion, Vector3};
+
+use crate::anatomy::{CYCLE_SECONDS, JOINTS, JointValues, LEFT_LEG, RIGHT_LEG, WAIST, limits};
+use crate::effector::MotorCommand;
+use crate::kinematics::{BESIDE, Foot, HIPS, inclination, leg_angles};
+use crate::parameters::parameters;
+use crate::walk::{Motion, Motors};
+
+parameters! {
+    /// The numbers of a kick, as its file names them.
+    KickParameters, "../kick.toml";
+    ball_x: 0.1, 0.6, "where the ball lies ahead of the robot, m";
+    ball_y: 0.0, 0.3, "the same to the side of the foot that kicks, m";
+    still: 0.0, 3.0, "how long the robot stands first, s";
+    height: 0.3, 0.55, "of the hips above the sole that stands, m";
+    foot: -0.15, 0.15, "where the soles are ahead of the hips, m";
+    lean: -0.4, 0.4, "pitch of the torso over the feet, forwards, rad";
+    shift: 0.0, 0.2, "of the hips towards the foot that stands, m";
+    tilt: -0.4, 0.4, "roll of the torso towards that foot, rad";
+    lift: 0.0, 0.2, "of the foot that kicks, m";
+    raise: -0.1, 0.2, "by how much it is higher after the swing, m";
+    inward: -0.1, 0.1, "of the foot that kicks from its place beside the other, m";
+    back: 0.0, 0.3, "of the foot that kicks, before the swing, m";
+    ahead: 0.0, 0.4, "the same, after the swing, m";
+    toes: -0.6, 0.6, "pitch of the foot that kicks, toes downwards, rad";
+    twist: -0.8, 0.8, "turn of the waist in the swing, towards the foot that kicks, rad";
+    shifting: 0.1, 2.0, "time for the shift of the weight, s";
+    lifting: 0.1, 2.0, "time to lift the foot, s";
+    swinging: 0.02, 1.0, "time of the swing, s";
+    holding: 0.0, 1.0, "time in which the foot stays ahead, s";
+    returning: 0.1, 2.0, "time to put the foot down, s";
+    unshifting: 0.1, 2.0, "time to put the weight on both feet, s";
+    blending: 0.05, 1.0, "time between the stand of the walk and that of the kick, s";
+    ankle_pitch: -1.0, 3.0, "ankle pitch for each rad of the torso's pitch";
+    ankle_pitch_rate: -0.3, 0.5, "ankle pitch for each rad/s of it, s";
+    hip_pitch: -1.0, 3.0, "hip pitch for each rad of the torso's pitch";
+    hip_pitch_rate: -0.3, 0.5, "hip pitch for each rad/s of it, s";
+    ankle_roll: -1.0, 3.0, "ankle roll for each rad of the torso's roll";
+    ankle_roll_rate: -0.3, 0.5, "ankle roll for each rad/s of it, s";
+    hip_roll: -1.0, 3.0, "hip roll for each rad of the torso's roll";
+    hip_roll_rate: -0.3, 0.5, "hip roll for each rad/s of it, s";
+    stiffness: 0.0, 1000.0, "torque per angle of the legs, Nm/rad";
+    damping: 0.0, 50.0, "torque per angular velocity of the legs, Nm s/rad";
+}
+
+/// A kick in progress.
+///
+/// The motors of a walk that stands are its input: the kick takes them over, and gives them back.
+/// Inclination and angular velocity of the torso move ankle and hip of the leg that stands.
+#[derive(Clone, Debug)]
+pub struct Kick {
+    parameters: KickParameters,
+    foot: Foot,
+    /// Since the begin, s.
+    time: f64,
+}
+
+/// How far the parts of a kick are at a time, from 0 to 1.
+struct Progress {
+    /// The motors that are the kick's, against those of the walk.
+    own: f64,
+    shift: f64,
+    lift: f64,
+    swing: f64,
+    /// Back from the swing to a stand.
+    back: f64,
+}
+
+impl Kick {
+    /// A kick with a foot.
+    pub fn new(parameters: KickParameters, foot: Foot) -> Kick {
+        Kick { parameters, foot, time: 0.0 }
+    }
+
+    /// Advances by a cycle of 20 ms. The motors hold the commands of a walk that stands. Returns
+    /// false when the kick is over.
+    pub fn advance(&mut self, motion: &Motion, motors: &mut Motors) -> bool {
+        self.time += CYCLE_SECONDS;
+        let Some(progress) = self.progress() else { return false };
+        let angles = self.angles(motion, &progress);
+        let KickParameters { stiffness, damping, .. } = self.parameters;
+        for (joint, motor) in motors.iter_mut().enumerate().skip(WAIST) {
+            let mix = |from: f64, to: f64| from + (to - from) * progress.own;
+            let (stiffness, damping) = match joint {
+                WAIST => (motor.stiffness, motor.damping),
+                _ => (mix(motor.stiffness, stiffness), mix(motor.damping, damping)),
+            };
+            let angle = mix(motor.angle, limits(joint).clamp(angles[joint]));
+            *motor = MotorCommand { angle, stiffness, damping, ..*motor };
+        }
+        true
+    }
+
+    fn progress(&self) -> Option<Progress> {
+        let kick = &self.parameters;
+        let mut begin = kick.still;
+        let mut part = |length: f64| {
+            let done = ((self.time - begin) / length).clamp(0.0, 1.0);
+            begin += length;
+            done
+        };
+        let taken = part(kick.blending);
+        let shifted = part(kick.shifting);
+        let lifted = part(kick.lifting);
+        let swung = part(kick.swinging);
+        part(kick.holding.max(CYCLE_SECONDS));
+        let returned = part(kick.returning);
+        let unshifted = part(kick.unshifting);
+        let given = part(kick.blending);
+        (given < 1.0).then(|| Progress {
+            own: smooth(taken) - smooth(given),
+            shift: smooth(shifted) - smooth(unshifted),
+            lift: smooth(lifted),
+            swing: swung,
+            back: smooth(returned),
+        })
+    }
+
+    fn angles(&self, motion: &Motion, progress: &Progress) -> JointValues {
+        let kick = &self.parameters;
+        let side = if self.foot == Foot::Left { 1.0 } else { -1.0 };
+        let Progress { shift, lift, swing, back, .. } = *progress;
+        // Positive to the right, as the left foot kicks.
+        let tilt = side * kick.tilt * shift;
+        let shift = side * kick.shift * shift;
+        let (ahead, up) = (
+            (-kick.back * lift + (kick.back + kick.ahead) * swing) * (1.0 - back),
+            (kick.lift * lift + kick.raise * swing) * (1.0 - back),
+        );
+        let inward = side * kick.inward * lift * (1.0 - back);
+        let stands = Vector3::new(kick.foot, -side * BESIDE + shift, -kick.height);
+        let kicks = Vector3::new(kick.foot + ahead, side * BESIDE + shift - inward, up - kick.height);
+        let turned = UnitQuaternion::from_euler_angles(-tilt, -kick.lean, 0.0);
+        let toes = UnitQuaternion::from_euler_angles(0.0, kick.toes * lift * (1.0 - back), 0.0);
+
+        let (roll, pitch) = inclination(&motion.down);
+        let (roll, pitch) = (roll - tilt, pitch - kick.lean);
+        let [roll_rate, pitch_rate, _] = motion.gyro;
+        let mut angles = [0.0; JOINTS];
+        angles[WAIST] = side * kick.twist * swing * (1.0 - back);
+        for (leg, foot) in [(LEFT_LEG, Foot::Left), (RIGHT_LEG, Foot::Right)] {
+            let sole = match foot == self.foot {
+                true => Isometry3::from_parts((HIPS + kicks).into(), turned * toes),
+                false => Isometry3::from_parts((HIPS + stands).into(), turned),
+            };
+            angles[leg..leg + 6].copy_from_slice(&leg_angles(foot, &sole));
+            // Both feet stand until one is lifted, and after it is put down.
+            if foot != self.foot || lift <= 0.0 || back >= 1.0 {
+                angles[leg] += kick.hip_pitch * pitch + kick.hip_pitch_rate * pitch_rate;
+                angles[leg + 1] += kick.hip_roll * roll + kick.hip_roll_rate * roll_rate;
+                angles[leg + 4] += kick.ankle_pitch * pitch + kick.ankle_pitch_rate * pitch_rate;
+                angles[leg + 5] += kick.ankle_roll * roll + kick.ankle_roll_rate * roll_rate;
+            }
+        }
+        angles
+    }
+}
+
+/// From 0 to 1 without a jump of the velocity.
+fn smooth(part: f64) -> f64 {
+    part * part * (3.0 - 2.0 * part)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const STILL: Motion = Motion {
+        positions: [0.0; JOINTS],
+        velocities: [0.0; JOINTS],
+        gyro: [0.0; 3],
+        down: Vector3::new(0.0, 0.0, -1.0),
+    };
+
+    fn run(foot: Foot) -> Vec<JointValues> {
+        let mut kick = Kick::new(KickParameters::own().unwrap(), foot);
+        let mut angles = Vec::new();
+        let mut motors = [MotorCommand::default(); JOINTS];
+        while kick.advance(&STILL, &mut motors) {
+            angles.push(motors.map(|motor| motor.angle));
+            motors = [MotorCommand::default(); JOINTS];
+        }
+        angles
+    }
+
+    #[test]
+    fn it_begins_and_ends_with_the_commands_of_the_walk_and_is_fast_in_lift_and_swing_only() {
+        let kick = KickParameters::own().unwrap();
+        let angles = run(Foot::Left);
+        assert!(angles[0].iter().all(|angle| *angle == 0.0));
+        let steps: Vec<f64> = angles
+            .windows(2)
+            .map(|pair| (0..JOINTS).map(|joint| (pair[1][joint] - pair[0][joint]).abs()).fold(0.0, f64::max))
+            .collect();
+        let fast = steps.iter().filter(|step| **step > 0.15).count() as f64 * CYCLE_SECONDS;
+        assert!(fast <= kick.lifting + kick.swinging + 3.0 * CYCLE_SECONDS, "{fast} s of fast motion");
+        assert!(angles.last().unwrap().iter().all(|angle| angle.abs() < 0.2));
+        assert!(angles.len() > 50 && angles.len() < 400, "{} cycles", angles.len());
+    }
+
+    #[test]
+    fn the_other_foot_kicks_in_a_mirror() {
+        let (left, right) = (run(Foot::Left), run(Foot::Right));
+        assert_eq!(left.len(), right.len());
+        for (left, right) in left.iter().zip(&right) {
+            for joint in 0..6 {
+                let sign = if matches!(joint, 1 | 2 | 5) { -1.0 } else { 1.0 };
+                assert!((left[LEFT_LEG + joint] - sign * right[RIGHT_LEG + joint]).abs() < 1e-3);
+                assert!((left[RIGHT_LEG + joint] - sign * right[LEFT_LEG + joint]).abs() < 1e-3);
+            }
+            assert_eq!(left[WAIST], -right[WAIST]);
+        }
+    }
+}

@@ -1,0 +1,85 @@
+//! The kinematics of the T1 against the physics model of the server, if Python has it.
+#![allow(clippy::unwrap_used)] // tests
+
+use std::fmt::Write as _;
+use std::io::Write as _;
+use std::process::{Command, Stdio};
+
+use monas_rcsssmj::kinematics::{Foot, camera, joint_origin, sole};
+use monas_rcsssmj::{JOINTS, JointValues, T1, centre_of_mass};
+use nalgebra::Point3;
+use rand_core::{Rng, SeedableRng};
+use rand_pcg::Pcg32;
+
+/// Random postures, and the number of points of each.
+const POSTURES: usize = 500;
+const POINTS: usize = 5;
+/// The greatest error, m, of each point. The server's model turns the arms by half a milliradian,
+/// which the anatomy leaves out.
+const BOUNDS: [(&str, f64); POINTS] = [
+    ("left sole", 1e-6),
+    ("right sole", 1e-6),
+    ("camera", 1e-6),
+    ("left elbow", 3e-4),
+    ("centre of mass", 1e-4),
+];
+/// The joint before the left lower arm.
+const LEFT_ELBOW: usize = 5;
+
+/// Where the server's physics has the points; none, loudly, without its model.
+fn truth(postures: &[JointValues]) -> Option<Vec<[Point3<f64>; POINTS]>> {
+    let mut text = String::new();
+    for angles in postures {
+        angles.iter().for_each(|angle| write!(text, "{angle} ").unwrap());
+        text.push('\n');
+    }
+    let mut command = Command::new("python3");
+    command.args(["-c", include_str!("poses.py")]).current_dir(std::env::temp_dir());
+    let process = command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::null()).spawn();
+    let answer = process.and_then(|mut process| {
+        // A program that ends at once, without the packages, does not read.
+        let _ = process.stdin.take().map(|mut input| input.write_all(text.as_bytes()));
+        process.wait_with_output()
+    });
+    let Some(answer) = answer.ok().filter(|answer| answer.status.success()) else {
+        eprintln!("\n!! SKIPPED: Python has no rcsssmj; `pip install rcsssmj==0.2.1` brings it\n");
+        return None;
+    };
+    let line = |line: &str| {
+        let numbers: Vec<f64> = line.split(' ').map(|number| number.parse().unwrap()).collect();
+        std::array::from_fn(|point| Point3::from_slice(&numbers[3 * point..3 * point + 3]))
+    };
+    Some(String::from_utf8(answer.stdout).unwrap().lines().map(line).collect())
+}
+
+#[test]
+fn points_of_the_body_are_where_the_servers_physics_has_them() {
+    let mut chance = Pcg32::seed_from_u64(1);
+    let limits = T1::joint_limits();
+    let posture = |_| {
+        std::array::from_fn::<f64, JOINTS, _>(|joint| {
+            let share = f64::from(chance.next_u32()) / f64::from(u32::MAX);
+            limits[joint].low + share * (limits[joint].high - limits[joint].low)
+        })
+    };
+    let postures: Vec<JointValues> = (0..POSTURES).map(posture).collect();
+    let Some(truth) = truth(&postures) else { return };
+    assert_eq!(truth.len(), POSTURES);
+    println!("| point | mean error, mm | greatest error, mm |\n|---|---|---|");
+    for (point, (name, bound)) in BOUNDS.into_iter().enumerate() {
+        let errors = postures.iter().zip(&truth).map(|(angles, truth)| {
+            let own = [
+                sole(Foot::Left, angles),
+                sole(Foot::Right, angles),
+                camera(angles),
+                joint_origin(LEFT_ELBOW, angles),
+                centre_of_mass(angles),
+            ];
+            (own[point] - truth[point]).norm()
+        });
+        let (sum, greatest) =
+            errors.fold((0.0, 0.0_f64), |(sum, most), error| (sum + error, most.max(error)));
+        println!("| {name} | {:.4} | {:.4} |", 1e3 * sum / POSTURES as f64, 1e3 * greatest);
+        assert!(greatest < bound, "{name}: {greatest} m");
+    }
+}
