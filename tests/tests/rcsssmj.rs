@@ -74,8 +74,8 @@ impl Run {
         })
     }
 
-    /// Where the attacker believes itself and the ball on the field, which it attacks along x: x and
-    /// y, m, heading, rad, and x and y of the ball.
+    /// Where the attacker believes itself and the ball on the field, which it attacks along x: x
+    /// and y, m, heading, rad, and x and y of the ball.
     fn scene(&self) -> [f64; 5] {
         let (pose, ball) = (self.blackboard.read(POSE).unwrap(), self.blackboard.read(BALL).unwrap());
         let ball = pose.field_from_robot() * ball.position();

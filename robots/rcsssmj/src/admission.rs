@@ -3,9 +3,9 @@
 //! A server without agents makes its cycles as fast as it can. In which one an agent joins depends
 //! on the computer, and with it the time of the server and the last digits of its physics. So
 //! another robot joins first and holds the server in lockstep until a certain cycle. Then the
-//! player joins, the other robot leaves, and the ball is placed anew. With the robot that leaves the
-//! server compiles its world again and forgets what its solver knew; the player goes to its place in
-//! the cycle after that. The states of two runs are equal from there on, bit for bit.
+//! player joins, the other robot leaves, and the ball is placed anew. With the robot that leaves
+//! the server compiles its world again and forgets what its solver knew; the player goes to its
+//! place in the cycle after that. The states of two runs are equal from there on, bit for bit.
 
 use std::time::Duration;
 

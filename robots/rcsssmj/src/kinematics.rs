@@ -59,13 +59,14 @@ pub fn sole(foot: Foot, angles: &JointValues) -> Point3<f64> {
     in_torso(Point3::new(0.0, 0.0, -SOLE), foot.last_joint(), angles)
 }
 
-/// From the middle between the hips to the pitch joint of the left one, and to its foot in a straight
-/// stand, m.
+/// From the middle between the hips to the pitch joint of the left one, and to its foot in a
+/// straight stand, m.
 pub(crate) const BESIDE: f64 = 0.106;
 /// From the pitch joint of the hip to the knee, and from there to the pitch joint of the ankle, m.
 const THIGH: f64 = 0.236_269_1;
 const SHANK: f64 = 0.28;
-/// The angle by which the line from the hip to the knee leans back when the joints are at zero, rad.
+/// The angle by which the line from the hip to the knee leans back when the joints are at zero,
+/// rad.
 const THIGH_ANGLE: f64 = 0.059_289_2;
 /// Rounds in which the place of a sole is approached: the axes of hip and ankle do not meet.
 const ROUNDS: usize = 5;
