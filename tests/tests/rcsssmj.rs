@@ -53,7 +53,8 @@ impl Run {
         let source =
             Arc::new(Source::new("rcsssmj.xml", text.replace("<body ", &format!("<body {attributes} "))));
         let (setup, diagnostics) = monas_config::read(&source, Path::new(configuration), &Registry::linked());
-        assert!(diagnostics.is_empty(), "{diagnostics:#?}");
+        // The limits of the body are information.
+        assert!(!diagnostics.iter().any(|found| found.is_error()), "{diagnostics:#?}");
         let talws = Talws::new().setup(setup);
         assert!(talws.has_own_time());
         let simulation = talws.simulate(seed).unwrap();

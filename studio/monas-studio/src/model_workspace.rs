@@ -122,7 +122,12 @@ impl ModelWorkspace {
 }
 
 impl ModelFile {
+    /// Reads the text. The path leads over no link, since links are followed when it is given: one
+    /// that has taken its place since would lead elsewhere.
     fn read(&self) -> Result<String, String> {
+        if self.path.is_symlink() {
+            return Err(format!("{}: the file was replaced by a link", self.name));
+        }
         read_text(&self.path).map_err(|error| format!("{}: {error}", self.name))
     }
 }

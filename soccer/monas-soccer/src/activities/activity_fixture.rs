@@ -6,21 +6,23 @@ use monas::{Activity, Blackboard, Progress};
 use monas_robot::Skill;
 use narukom::{Hub, Retention, Timestamp, Topic};
 
-use crate::topics;
+use crate::{MotionRequest, topics};
 
 /// A hub, the blackboard of the activity under test, and one for all other participants.
 pub(crate) struct ActivityFixture {
     pub(crate) now: Timestamp,
     blackboard: Blackboard,
     others: Blackboard,
+    /// Reads the requests of motions.
+    watcher: Blackboard,
 }
 
 impl ActivityFixture {
     /// A fixture at a time of two seconds.
     pub(crate) fn new() -> ActivityFixture {
         let hub = Hub::with_linked_topics("robot").unwrap();
-        let (actor, others) = (hub.blackboard("actor"), hub.blackboard("others"));
-        ActivityFixture { now: Timestamp::from_nanos(2_000_000_000), blackboard: actor, others }
+        let [blackboard, others, watcher] = ["actor", "others", "watcher"].map(|name| hub.blackboard(name));
+        ActivityFixture { now: Timestamp::from_nanos(2_000_000_000), blackboard, others, watcher }
     }
 
     /// Advances time.
@@ -44,17 +46,23 @@ impl ActivityFixture {
     /// Calls the activity once, in its own cycle, and returns whether it is done. A skill that it
     /// requests has to be one that it declares.
     pub(crate) fn run(&mut self, activity: &mut dyn Activity) -> bool {
-        let before = self.latest(topics::MOTION);
+        let before = self.motion();
         self.blackboard.process_messages(self.now);
         let progress = activity.execute(&mut self.blackboard).unwrap();
         self.blackboard.publish_all(self.now);
-        if let Some(wanted) = self.latest(topics::MOTION).filter(|wanted| before.as_ref() != Some(wanted))
+        if let Some(wanted) = self.motion().filter(|wanted| before.as_ref() != Some(wanted))
             && let name = wanted.kind().as_str_name()
             && Skill::from_str_name(name).is_some()
         {
             assert!(activity.topics().skills().contains(&name), "it does not declare {name}");
         }
         progress == Progress::Done
+    }
+
+    /// The newest request of a motion.
+    fn motion(&mut self) -> Option<MotionRequest> {
+        self.watcher.process_messages(self.now);
+        self.watcher.read(topics::MOTION).copied()
     }
 
     /// The error of a call of the activity, if it fails.
