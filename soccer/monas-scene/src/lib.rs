@@ -15,8 +15,10 @@
 //! use monas_studio::Scene;
 //! use serde_json::json;
 //!
-//! let truth = json!({"ball_x": 0.5, "ball_y": 0.0,
-//!     "robots": [{"team": 1, "number": 2, "x": -1.0, "y": 0.0, "heading": 0.0, "on_field": true}]});
+//! let robot = json!({"team": 1, "number": 2, "x": -1.0, "y": 0.0, "heading": 0.0,
+//!     "on_field": true, "upright": true});
+//! let truth = json!({"ball_x": 0.5, "ball_y": 0.0, "ball_vx": 0.0, "ball_vy": 0.0,
+//!     "robots": [robot]});
 //! let messages = [(("field", "sim/truth"), &truth)].into_iter().collect();
 //! let picture = SoccerField.draw(&messages);
 //! assert_eq!((picture.bodies.len(), picture.objects.len()), (1, 1));
