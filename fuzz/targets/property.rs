@@ -17,7 +17,7 @@ fuzz_target!(|text: &str| {
         assert_eq!(findings, [], "{printed}");
         assert_eq!(again, [property.clone()]);
         let Some(chart) = CHART.as_ref() else { continue };
-        match bind(property, chart) {
+        match bind(property, chart, &TypeEnvironment::default()) {
             Ok(bound) => {
                 let mut monitor = Monitor::new(bound.plan);
                 for (letter, now) in [(0, 0), (1, 10), (!0, 2_000_000_000), (2, u64::MAX)] {
