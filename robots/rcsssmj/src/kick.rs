@@ -167,18 +167,11 @@ fn smooth(part: f64) -> f64 {
 mod tests {
     use super::*;
 
-    const STILL: Motion = Motion {
-        positions: [0.0; JOINTS],
-        velocities: [0.0; JOINTS],
-        gyro: [0.0; 3],
-        down: Vector3::new(0.0, 0.0, -1.0),
-    };
-
     fn run(foot: Foot) -> Vec<JointValues> {
         let mut kick = Kick::new(KickParameters::own().unwrap(), foot);
         let mut angles = Vec::new();
         let mut motors = [MotorCommand::default(); JOINTS];
-        while kick.advance(&STILL, &mut motors) {
+        while kick.advance(&Motion::STILL, &mut motors) {
             angles.push(motors.map(|motor| motor.angle));
             motors = [MotorCommand::default(); JOINTS];
         }

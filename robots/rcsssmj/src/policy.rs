@@ -210,8 +210,6 @@ impl WalkEngine for PolicyWalk {
 
 #[cfg(test)]
 mod tests {
-    use nalgebra::Vector3;
-
     use super::*;
 
     /// Weights that are all zero, except for some.
@@ -220,13 +218,6 @@ mod tests {
         set.iter().for_each(|(place, value)| numbers[*place] = *value);
         numbers.iter().flat_map(|number| number.to_le_bytes()).collect()
     }
-
-    const STILL: Motion = Motion {
-        positions: [0.0; JOINTS],
-        velocities: [0.0; JOINTS],
-        gyro: [0.0; 3],
-        down: Vector3::new(0.0, 0.0, -1.0),
-    };
 
     #[test]
     fn a_file_of_another_size_or_with_other_than_numbers_is_refused() {
@@ -250,7 +241,7 @@ mod tests {
     fn without_weights_the_joints_are_where_the_network_moves_them_around() {
         let mut walk = PolicyWalk::from_bytes(&weights(&[])).unwrap();
         let mut motors = [MotorCommand::default(); JOINTS];
-        walk.advance(WalkVelocity::default(), &STILL, &mut motors);
+        walk.advance(WalkVelocity::default(), &Motion::STILL, &mut motors);
         let bent = MotorCommand { stiffness: 25.0, damping: 0.6, ..MotorCommand::default() };
         let angles = motors.map(|motor| (motor.angle * 10.0).round() / 10.0);
         assert_eq!((angles[3], angles[11], angles[14], angles[17], angles[20]), (-1.4, -0.4, 0.8, -0.4, 0.8));
@@ -273,7 +264,7 @@ mod tests {
         ];
         let mut walk = PolicyWalk::from_bytes(&weights(&set)).unwrap();
         let mut motors = [MotorCommand::default(); JOINTS];
-        walk.advance(WalkVelocity { x: 0.8, ..WalkVelocity::default() }, &STILL, &mut motors);
+        walk.advance(WalkVelocity { x: 0.8, ..WalkVelocity::default() }, &Motion::STILL, &mut motors);
         // One value among 512 equal ones has the deviation sqrt(511) after normalisation.
         let unit = 0.1 * 511f64.sqrt();
         let expected = -0.5 * libm::expm1(2.0 * libm::expm1(-unit));
@@ -286,9 +277,9 @@ mod tests {
         let mut walk = PolicyWalk::from_bytes(&weights(&[])).unwrap();
         let mut motors = [MotorCommand::default(); JOINTS];
         let aside = WalkVelocity { y: 0.2, ..WalkVelocity::default() };
-        walk.advance(aside, &STILL, &mut motors);
+        walk.advance(aside, &Motion::STILL, &mut motors);
         assert_eq!(walk.input[3 * JOINTS + 4], 0.2);
-        walk.advance(WalkVelocity { turn: -0.5, ..aside }, &STILL, &mut motors);
+        walk.advance(WalkVelocity { turn: -0.5, ..aside }, &Motion::STILL, &mut motors);
         assert_eq!(walk.input[3 * JOINTS + 4], 0.1);
     }
 }

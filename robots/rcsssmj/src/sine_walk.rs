@@ -159,21 +159,12 @@ impl WalkEngine for SineWalk {
 
 #[cfg(test)]
 mod tests {
-    use nalgebra::Vector3;
-
     use super::*;
-
-    const STILL: Motion = Motion {
-        positions: [0.0; JOINTS],
-        velocities: [0.0; JOINTS],
-        gyro: [0.0; 3],
-        down: Vector3::new(0.0, 0.0, -1.0),
-    };
 
     fn run(walk: &mut SineWalk, velocity: WalkVelocity, cycles: usize) -> Vec<JointValues> {
         let mut motors = [MotorCommand::default(); JOINTS];
         let mut cycle = || {
-            walk.advance(velocity, &STILL, &mut motors);
+            walk.advance(velocity, &Motion::STILL, &mut motors);
             motors.map(|motor| motor.angle)
         };
         (0..cycles).map(|_| cycle()).collect()

@@ -30,6 +30,17 @@ pub struct Motion {
     pub down: Vector3<f64>,
 }
 
+#[cfg(test)]
+impl Motion {
+    /// An upright robot that stands still, with all joints at zero.
+    pub(crate) const STILL: Motion = Motion {
+        positions: [0.0; JOINTS],
+        velocities: [0.0; JOINTS],
+        gyro: [0.0; 3],
+        down: Vector3::new(0.0, 0.0, -1.0),
+    };
+}
+
 /// Commands to all motors.
 pub type Motors = [MotorCommand; JOINTS];
 

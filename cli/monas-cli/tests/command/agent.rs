@@ -44,12 +44,15 @@ fn a_session_with_a_run_in_real_time() {
     done(&["set", "Lights", "frequency=100", "on_failure=skip"]);
     done(&["stop", "Mind"]);
     done(&["start", "Mind"]);
-    let model = root().join("models/goalie.srm").display().to_string();
-    let before = done(&["list", "Mind", "--format", "json"]);
+    // The same role from another file: only the path says whether it was exchanged.
+    let model = folder.path().join("goalie.srm").display().to_string();
+    fs::copy(root().join("models/goalie.srm"), &model).expect("a copy");
+    let model_of_mind =
+        || objects(&done(&["list", "Mind", "--format", "json"]))[0]["charts"][0]["model"].clone();
     assert!(done(&["swap", "Mind", &model, "--dry-run"]).contains("could be changed"));
-    let model_of = |list: &str| objects(list)[0]["charts"][0]["model"].clone();
-    assert_eq!(model_of(&done(&["list", "Mind", "--format", "json"])), model_of(&before));
+    assert_ne!(model_of_mind(), *model, "a dry run changes nothing");
     assert!(done(&["swap", "Mind", &model]).contains("is changed"));
+    assert_eq!(model_of_mind(), *model);
 
     let lights = objects(&done(&["list", "Lights", "--format", "json"]));
     let names: Vec<&Value> =
