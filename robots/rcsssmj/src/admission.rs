@@ -21,9 +21,10 @@ use crate::server::Server;
 /// with an odd number.
 const FIRST: u64 = 1001;
 /// How often a server is started that was not joined in time.
-const ATTEMPTS: usize = 10;
-/// How long the server has to take in an agent while it waits for another one.
-const TAKING_IN: Duration = Duration::from_millis(50);
+const ATTEMPTS: u32 = 10;
+/// How long the server has to come to its waiting for an agent, and to take in another one
+/// meanwhile. On a busy computer each further attempt gives it as much time more.
+const TAKING_IN: Duration = Duration::from_millis(60);
 /// How long it has to send what it has computed already.
 const SENDING: Duration = Duration::from_secs(2);
 /// The middle of a ball on the centre spot, m.
@@ -41,12 +42,12 @@ impl Admission {
     /// # Errors
     /// The server cannot be started, or it is never joined in time.
     pub(crate) fn new(options: &Options) -> Result<Admission, Error> {
-        for _ in 0..ATTEMPTS {
+        for attempt in 1..=ATTEMPTS {
             let mut server = Server::start(options.server.as_deref(), true)?;
             // Connected before the first cycle: the threads of a busy server wait for each other.
             let holder = server.agent()?;
             let monitor = server.monitor()?;
-            if let Some(player) = join(&server, holder, monitor, options)? {
+            if let Some(player) = join(&server, holder, monitor, options, TAKING_IN * attempt)? {
                 return Ok(Admission { server, player });
             }
         }
@@ -55,12 +56,13 @@ impl Admission {
     }
 }
 
-/// Joins in the first cycle; none if it was missed.
+/// Joins so that the player's first percepts are those of [`FIRST`]; none if it was missed.
 fn join(
     server: &Server,
     mut holder: Connection,
     mut monitor: Monitor,
     options: &Options,
+    taking_in: Duration,
 ) -> Result<Option<Connection>, Error> {
     // A number beside the player's.
     let number = if options.number > 1 { options.number - 1 } else { 2 };
@@ -73,10 +75,13 @@ fn join(
         cycle = hold(&mut holder)?;
         monitor.drain()?;
     }
+    // The server finds new agents when it begins a cycle. It has begun the next one, and not the one
+    // after it, once it waits for the holder's answer.
+    monitor.wait_beyond(time(FIRST - 2))?;
+    pause(taking_in);
     let mut player = Connection::open(server.agents())?;
     init(&mut player, &options.team, options.number)?;
-    pause(TAKING_IN);
-    // The server finds new agents when it begins a cycle, which is the one after the next.
+    pause(taking_in);
     hold(&mut holder)?;
     hold(&mut holder)?;
     let Some(message) = player.receive_within(SENDING)? else { return Ok(None) };
