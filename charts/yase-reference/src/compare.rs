@@ -11,7 +11,7 @@ use std::sync::Arc;
 use yase::statechart::{NodeId, Statechart};
 use yase::{Activation, Chooser, Machine, Outcome, ScopeId, Timestamp, TopicId};
 
-use crate::chance::{Chance, Freedom};
+use crate::chooser::{ChoicePolicy, ReferenceChooser};
 use crate::random::Case;
 use crate::script::{self, ByMicroSteps, Interpreter};
 use crate::stepper::Stepper;
@@ -41,7 +41,7 @@ pub(crate) fn judge(case: &Case) -> Verdict {
     let timers = chart.timers().map(|(region, name)| (region, name.to_owned())).collect();
     let expected = by_reference(case, timers);
     let mut machine = Machine::new(chart);
-    machine.set_chooser(chooser(&case.freedom));
+    machine.set_chooser(chooser(&case.policy));
     for found in
         [by_machine(case, machine.clone(), false), by_machine(case, ByMicroSteps(machine.clone()), false)]
     {
@@ -65,11 +65,11 @@ fn host(case: &Case) -> TestHost {
 
 fn by_reference(case: &Case, timers: Vec<(ScopeId, String)>) -> Vec<String> {
     let mut host = host(case);
-    let chance = Chance::new(case.freedom.clone());
+    let chooser = ReferenceChooser::new(case.policy.clone());
     let mut watched =
-        Watched { inner: Stepper::new(&case.chart, case.semantics, chance, timers), chart: &case.chart };
+        Watched { inner: Stepper::new(&case.chart, case.semantics, chooser, timers), chart: &case.chart };
     script::run(&mut watched, &case.script, &mut host);
-    host.say(format!("asked {:?}", watched.inner.chance.reported()));
+    host.say(format!("asked {:?}", watched.inner.chooser.reported()));
     normal(host.log)
 }
 
@@ -81,11 +81,11 @@ fn by_machine<M: Asked>(case: &Case, machine: M, silent: bool) -> Vec<String> {
     normal(host.log)
 }
 
-fn chooser(freedom: &Freedom) -> Chooser {
-    match freedom {
-        Freedom::Declared => Chooser::declared(),
-        Freedom::Seeded(seed) => Chooser::seeded(*seed),
-        Freedom::Scripted(choices) => Chooser::scripted(choices.clone()),
+fn chooser(policy: &ChoicePolicy) -> Chooser {
+    match policy {
+        ChoicePolicy::Declared => Chooser::declared(),
+        ChoicePolicy::Seeded(seed) => Chooser::seeded(*seed),
+        ChoicePolicy::Scripted(choices) => Chooser::scripted(choices.clone()),
     }
 }
 
@@ -203,7 +203,7 @@ pub(crate) fn describe(case: &Case, difference: &Difference) -> String {
     format!(
         "{:?} {:?}\n{:?}\n{}{:?}\n\n{}\nexpected {}\nfound    {}\n",
         case.variant,
-        case.freedom,
+        case.policy,
         case.semantics,
         chart_text(&case.chart),
         case.script,

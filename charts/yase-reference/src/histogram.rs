@@ -1,6 +1,6 @@
-//! The number of cases in which something occurred: elements of charts, lines of logs, semantics.
+//! Coverage of played cases: how many contain each element of charts, log line and semantics.
 
-mod lines;
+mod parsed_line;
 
 use std::collections::BTreeMap;
 
@@ -8,7 +8,7 @@ use yase::expression::Trigger;
 use yase::statechart::{NodeId, NodeKind, Statechart, Transition};
 
 use crate::random::{Case, POINTS, Variant, differs_somewhere, has};
-use lines::{Line, lines};
+use parsed_line::{Line, lines};
 
 /// The number of played charts in which each row occurred.
 #[derive(Clone, Default)]
@@ -97,12 +97,12 @@ impl Histogram {
             self.add(format!("point {name}"), alone);
         }
         self.add("points mixed", case.variant == Variant::Mixed);
-        self.add("chooser declared", matches!(case.freedom, crate::chance::Freedom::Declared));
-        self.add("chooser seeded", matches!(case.freedom, crate::chance::Freedom::Seeded(_)));
-        self.add("chooser scripted", matches!(case.freedom, crate::chance::Freedom::Scripted(_)));
+        self.add("chooser declared", matches!(case.policy, crate::chooser::ChoicePolicy::Declared));
+        self.add("chooser seeded", matches!(case.policy, crate::chooser::ChoicePolicy::Seeded(_)));
+        self.add("chooser scripted", matches!(case.policy, crate::chooser::ChoicePolicy::Scripted(_)));
     }
 
-    /// The counts, a row a line.
+    /// The counts, one row per line.
     pub fn text(&self) -> String {
         let lines: Vec<String> = self.rows.iter().map(|(row, count)| format!("{count:8} {row}")).collect();
         lines.join("\n")
@@ -113,18 +113,18 @@ impl Histogram {
         self.rows.iter().filter(|(_, count)| **count == 0).map(|(row, _)| row).collect()
     }
 
-    /// How many charts were played.
+    /// The number of charts that were played.
     pub fn played(&self) -> u64 {
         ["declared", "seeded", "scripted"].iter().map(|name| self.row(&format!("chooser {name}"))).sum()
     }
 
-    /// In how many charts a row occurred.
+    /// The number of charts in which a row occurred.
     pub fn row(&self, row: &str) -> u64 {
         self.rows.get(row).copied().unwrap_or(0)
     }
 }
 
-/// How many nodes of a kind are around a node, itself included.
+/// The number of nodes of a kind among a node and its ancestors.
 fn depth(chart: &Statechart, node: NodeId, kind: NodeKind) -> usize {
     std::iter::once(node).chain(chart.ancestors(node)).filter(|&node| chart.node(node).kind == kind).count()
 }
@@ -156,7 +156,7 @@ impl Seen<'_> {
         self.nodes.get(name).copied()
     }
 
-    /// The first segments of the transitions in a line, as far as their ends distinguish them.
+    /// The first segments of the transitions in a line, if their sources and targets identify them.
     fn fired<'s>(&'s self, line: &'s Line<'_>) -> impl Iterator<Item = &'s Transition> {
         line.selected.iter().flat_map(move |compound| {
             let mut ends = compound.split(" -> ").map(|name| name.split(" + ").next().unwrap_or(name));
@@ -434,7 +434,7 @@ const SEEN: [Row; 88] = [
     }),
 ];
 
-/// Whether a selected transition fits, given the names of the nodes on its path.
+/// Whether a selected transition matches the names of the nodes on its path.
 fn selected(seen: &Seen<'_>, fits: impl Fn(&Seen<'_>, &[&str]) -> bool) -> bool {
     let compounds = seen.lines.iter().flat_map(|line| &line.selected);
     compounds.map(|compound| compound.split(" -> ").collect::<Vec<_>>()).any(|names| fits(seen, &names))

@@ -20,8 +20,8 @@
 
 #![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used, reason = "it serves tests only")]
 
-pub mod chance;
 pub mod chart;
+pub mod chooser;
 mod compare;
 pub mod histogram;
 pub mod parallel;

@@ -1,18 +1,18 @@
 //! Random charts, scripts and semantics, made from a sequence of random bytes; shorter sequences
 //! give smaller cases.
 
+mod expressions;
 mod nodes;
-mod points;
-mod wires;
-mod words;
+mod transitions;
+mod variation_points;
 
 use yase::statechart::{NodeId, Statechart};
 use yase::{CompletionTrigger, EventMatching, Firing, Semantics, StructureRules, TopicId};
 
-use crate::chance::Freedom;
+use crate::chooser::ChoicePolicy;
 use crate::script::{Input, Script};
 
-pub(crate) use points::{POINTS, Variant, differs_somewhere, has};
+pub(crate) use variation_points::{POINTS, Variant, differs_somewhere, has};
 
 /// Random choices from bytes; after the last byte always the first option.
 pub(crate) struct Choices<'a> {
@@ -50,7 +50,7 @@ pub struct Case {
     /// How the semantics was derived.
     pub(crate) variant: Variant,
     /// How open choices are resolved.
-    pub freedom: Freedom,
+    pub policy: ChoicePolicy,
 }
 
 impl Case {
@@ -63,15 +63,15 @@ impl Case {
     }
 
     fn from_choices(choices: &mut Choices<'_>) -> Case {
-        let (semantics, variant) = points::semantics(choices);
-        let freedom = freedom(choices);
+        let (semantics, variant) = variation_points::semantics(choices);
+        let policy = policy(choices);
         let script = script(choices, &semantics);
         let mut maker =
             Maker { chart: Statechart::new("c"), choices, semantics, names: 0, timers: 0, short: vec![] };
         maker.composite(Statechart::ROOT, 0);
         maker.transitions();
         maker.weights();
-        Case { chart: maker.chart, script, semantics, variant, freedom }
+        Case { chart: maker.chart, script, semantics, variant, policy }
     }
 }
 
@@ -83,11 +83,11 @@ fn next(state: &mut u64) -> u64 {
     z ^ (z >> 31)
 }
 
-fn freedom(choices: &mut Choices<'_>) -> Freedom {
+fn policy(choices: &mut Choices<'_>) -> ChoicePolicy {
     match choices.below(4) {
-        0 => Freedom::Declared,
-        1 => Freedom::Seeded(choices.below(256) as u64),
-        _ => Freedom::Scripted((0..12).map(|_| choices.below(3) as u32).collect()),
+        0 => ChoicePolicy::Declared,
+        1 => ChoicePolicy::Seeded(choices.below(256) as u64),
+        _ => ChoicePolicy::Scripted((0..12).map(|_| choices.below(3) as u32).collect()),
     }
 }
 

@@ -1,4 +1,4 @@
-//! Shrinks a case with a difference: removes everything that is not needed to keep a difference.
+//! Shrinks a case that shows a difference: removes every element that the difference does not need.
 
 use yase::statechart::{Node, NodeId, NodeKind, Statechart, Transition};
 
@@ -20,7 +20,7 @@ fn differs(case: &Case) -> bool {
     matches!(judge(case), Verdict::Different(_))
 }
 
-/// Cases with one element less, the largest elements first.
+/// Cases with one element fewer, the largest elements removed first.
 fn smaller_cases(case: &Case) -> Vec<Case> {
     let nodes = case.chart.nodes().len() as u32;
     let transitions = case.chart.transitions().len();

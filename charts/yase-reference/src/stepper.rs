@@ -1,24 +1,24 @@
 //! A naive interpreter of statecharts that follows the rules directly: sets of nodes, recursion and
 //! clones. Derived data is recomputed whenever it is needed.
 
-mod act;
-mod arrive;
-mod enter;
-mod fire;
-mod lines;
-mod select;
-mod step;
+mod actions;
+mod arrivals;
+mod entry;
+mod evaluation;
+mod firing;
+mod log_lines;
+mod segments;
+mod selection;
+mod steps;
 mod transitions;
 mod tree;
-mod truth;
-mod walk;
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use yase::statechart::{NodeId, Statechart, TransitionId};
 use yase::{Activation, Outcome, ScopeId, Semantics, Timestamp, TopicId};
 
-use crate::chance::Chance;
+use crate::chooser::ReferenceChooser;
 use crate::script::Interpreter;
 use crate::test_host::{TOPICS, TestHost};
 use transitions::StaticPath;
@@ -41,12 +41,12 @@ pub(crate) struct Occurrence {
     expiry: Option<(ScopeId, String)>,
 }
 
-/// An event held for running activities: the transitions it would take, and whether it is offered
-/// again.
+/// An event held until running activities return: the transitions it selected, and whether it is
+/// offered again.
 #[derive(Clone, Debug)]
 struct Held {
     occurrence: Occurrence,
-    ways: Vec<StaticPath>,
+    paths: Vec<StaticPath>,
     offer: bool,
 }
 
@@ -70,11 +70,11 @@ struct Job {
 struct Deadline {
     moment: Timestamp,
     announced: bool,
-    /// The state it is bound to.
+    /// The state that the timer is bound to.
     bound: Option<NodeId>,
 }
 
-/// What happens in a micro-step, for its line.
+/// Record of a micro-step for its log line.
 #[derive(Clone, Debug, Default)]
 struct Line {
     exits: Vec<NodeId>,
@@ -88,7 +88,7 @@ pub(crate) struct Stepper<'c> {
     chart: &'c Statechart,
     tree: Tree,
     semantics: Semantics,
-    pub(crate) chance: Chance,
+    pub(crate) chooser: ReferenceChooser,
     running_chart: bool,
     now: Timestamp,
     due: bool,
@@ -104,7 +104,7 @@ pub(crate) struct Stepper<'c> {
     arrivals: BTreeSet<(NodeId, NodeId)>,
     /// The transitions of this micro-step.
     taken: Vec<StaticPath>,
-    /// ANDs entered on the way to a target, whose other regions are entered last.
+    /// ANDs entered by segments, whose other regions are entered last.
     late: Vec<NodeId>,
     /// Composites whose active children were exited, which count as complete.
     vacated: BTreeSet<NodeId>,
@@ -123,18 +123,18 @@ pub(crate) struct Stepper<'c> {
     found: Vec<(NodeId, StaticPath)>,
     /// The active leaves from which a candidate was found, outward.
     closed: BTreeSet<NodeId>,
-    /// The active leaves at its beginning.
+    /// The active leaves when the micro-step began.
     leaves: Vec<NodeId>,
-    /// The segments whose guards have failed in this micro-step, each reported once.
+    /// Segments whose guards failed in this micro-step; each failure is reported once.
     reported: BTreeSet<TransitionId>,
-    /// The segments with weights that were drawn in this micro-step.
+    /// Weighted segments that the chooser picked in this micro-step.
     drawn: Vec<TransitionId>,
     line: Line,
     micro_steps: u32,
     did_something: bool,
     instant: Timestamp,
     steps_at_instant: u32,
-    /// The root has reached its END, and active states have still to be exited.
+    /// The root has reached its END; active states remain to be exited.
     ended: bool,
     /// TERMINATE was reached in this micro-step.
     terminates: bool,
@@ -144,18 +144,18 @@ pub(crate) struct Stepper<'c> {
 }
 
 impl<'c> Stepper<'c> {
-    /// `timer_numbers` are the timers in the order of their indices, which the rules leave open.
+    /// `timer_numbers` gives the order of timers, which the rules leave open.
     pub(crate) fn new(
         chart: &'c Statechart,
         semantics: Semantics,
-        chance: Chance,
+        chooser: ReferenceChooser,
         timer_numbers: Vec<(ScopeId, String)>,
     ) -> Stepper<'c> {
         Stepper {
             chart,
             tree: Tree::new(chart, semantics.order),
             semantics,
-            chance,
+            chooser,
             running_chart: false,
             now: Timestamp::ZERO,
             due: false,
@@ -252,12 +252,12 @@ impl Interpreter for Stepper<'_> {
             Outcome::Failed => Phase::Failed,
         };
         let mut held = std::mem::take(&mut self.held);
-        for Held { ways, offer, .. } in &mut held {
-            let in_the_way = |way: &StaticPath| {
-                self.exit_set(way).contains(&activation.node)
-                    || way.sources.iter().any(|&source| self.region(source) == activation.region)
+        for Held { paths, offer, .. } in &mut held {
+            let in_the_way = |path: &StaticPath| {
+                self.exit_set(path).contains(&activation.node)
+                    || path.sources.iter().any(|&source| self.region(source) == activation.region)
             };
-            *offer |= ways.iter().any(in_the_way);
+            *offer |= paths.iter().any(in_the_way);
         }
         self.held = held;
         match outcome {
@@ -270,7 +270,7 @@ impl Interpreter for Stepper<'_> {
     }
 
     fn resumed(&mut self, activation: Activation) -> bool {
-        let about_to_be_left = self.pending.iter().any(|(way, _)| self.would_leave(way, activation.node));
+        let about_to_be_left = self.pending.iter().any(|(path, _)| self.would_leave(path, activation.node));
         let Some(job) = self.jobs.get_mut(&activation.node) else { return false };
         assert_eq!((job.number, job.phase), (activation.number, Phase::Ongoing));
         if about_to_be_left {

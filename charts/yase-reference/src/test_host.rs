@@ -53,7 +53,7 @@ pub struct Number {
     pub n: i64,
 }
 
-/// One blackboard: visible messages, arrived messages, messages to publish.
+/// A blackboard: visible messages, arrived messages and messages to publish.
 #[derive(Clone, Default, Debug)]
 pub struct Board {
     /// The latest messages, as visible to guards.
@@ -96,7 +96,7 @@ pub struct TestHost {
     pub log: Vec<String>,
     /// Whether operations on blackboards are logged too.
     pub verbose: bool,
-    /// Whether micro-steps are not logged: then the machine may use its fast path.
+    /// Disables the logging of micro-steps, so that the machine may use its fast path.
     pub silent: bool,
     /// Whether the lines of micro-steps contain the reads of guards.
     pub reads: bool,
@@ -125,12 +125,12 @@ impl TestHost {
         }
     }
 
-    /// A blackboard, made if it is not there.
+    /// The blackboard of a scope, created on first use.
     pub fn board(&mut self, region: ScopeId) -> &mut Board {
         self.boards.entry(region).or_default()
     }
 
-    /// A message reaches every blackboard, to be delivered there.
+    /// Queues a message for delivery on every blackboard.
     pub fn send(&mut self, topic: TopicId, value: i64, regions: impl Iterator<Item = ScopeId>) {
         for region in regions {
             self.board(region).inbox.insert(topic, Number { n: value });
@@ -138,7 +138,7 @@ impl TestHost {
         self.arrivals.push(topic);
     }
 
-    /// The number on a blackboard, if a message has arrived there.
+    /// The number in a topic's message on a blackboard, if one has arrived.
     pub fn number(&self, region: ScopeId, topic: TopicId) -> Option<i64> {
         Some(self.shown(region, topic)?.n)
     }
@@ -147,7 +147,8 @@ impl TestHost {
         self.boards.get(&region)?.shown.get(&topic)
     }
 
-    /// The outcome of an activity: `ongoing…` ends after its third call, `failing…` always fails.
+    /// The outcome of a call of an activity: `ongoing…` ends after its third call, `failing…`
+    /// always fails.
     pub fn outcome(job: &Job) -> Outcome {
         match job.name.as_str() {
             name if name.starts_with("ongoing") && job.calls < 3 => Outcome::Ongoing,

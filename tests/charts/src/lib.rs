@@ -22,7 +22,7 @@ use std::sync::Arc;
 
 use yase::{Chooser, CompiledChart, Machine};
 
-use yase_reference::chance::Freedom;
+use yase_reference::chooser::ChoicePolicy;
 use yase_reference::random::Case;
 use yase_reference::script;
 use yase_reference::test_host::{TestHost, vocabulary};
@@ -31,10 +31,10 @@ use yase_reference::test_host::{TestHost, vocabulary};
 fn played(case: &Case, chart: CompiledChart) -> Vec<String> {
     let mut host = TestHost { verbose: true, reads: true, ..TestHost::new(&case.chart) };
     let mut machine = Machine::new(Arc::new(chart));
-    machine.set_chooser(match &case.freedom {
-        Freedom::Declared => Chooser::declared(),
-        Freedom::Seeded(seed) => Chooser::seeded(*seed),
-        Freedom::Scripted(choices) => Chooser::scripted(choices.clone()),
+    machine.set_chooser(match &case.policy {
+        ChoicePolicy::Declared => Chooser::declared(),
+        ChoicePolicy::Seeded(seed) => Chooser::seeded(*seed),
+        ChoicePolicy::Scripted(choices) => Chooser::scripted(choices.clone()),
     });
     script::run(&mut machine, &case.script, &mut host);
     host.say(format!("at the end {:?} {:?}", machine.status(), machine.configuration()));

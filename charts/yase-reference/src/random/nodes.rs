@@ -11,7 +11,7 @@ use super::Maker;
 const MANY: usize = 28;
 
 impl Maker<'_, '_> {
-    /// The children of an OR.
+    /// Adds the children of an OR.
     pub(crate) fn composite(&mut self, composite: NodeId, depth: usize) {
         let without = depth > 0 && self.makes_uml() && self.choices.percent(12);
         if !without {
@@ -49,7 +49,7 @@ impl Maker<'_, '_> {
         self.chart.add(parent, node);
     }
 
-    /// FORK and JOIN for an AND.
+    /// Adds FORK and JOIN for an AND.
     fn around_ands(&mut self, composite: NodeId) {
         let and = |maker: &Self, node: NodeId| maker.chart.node(node).kind == NodeKind::And;
         let ands: Vec<NodeId> =
@@ -62,7 +62,7 @@ impl Maker<'_, '_> {
         }
     }
 
-    /// Entry and exit points and history of a composite.
+    /// Adds entry points, exit points and a history to a composite.
     fn borders(&mut self, composite: NodeId) {
         for (kind, prefix, percent) in [
             (NodeKind::ShallowHistory, "h", 15),
@@ -116,7 +116,7 @@ impl Maker<'_, '_> {
         }
     }
 
-    /// The regions of an AND: mostly ORs, but any state is possible.
+    /// Adds the regions of an AND: mostly ORs, but any state is possible.
     fn regions(&mut self, and: NodeId, depth: usize) {
         for _ in 0..2 + self.choices.below(2) {
             let kind = match self.choices.below(12) {
@@ -132,7 +132,7 @@ impl Maker<'_, '_> {
         self.borders(and);
     }
 
-    /// A region that completes early: one state, and END.
+    /// Adds a region that completes early: one state and END.
     fn short_region(&mut self, and: NodeId, depth: usize) {
         let name = self.name("r");
         let region = self.chart.add(and, Node::new(NodeKind::Or, name));

@@ -1,4 +1,4 @@
-//! Compound transitions: R2, R6, and what a compound would leave.
+//! Compound transitions and the states they exit: R2, R6.
 
 use std::collections::BTreeSet;
 
@@ -8,17 +8,17 @@ use yase::{
 };
 
 use super::Stepper;
-use super::arrive::Arrival;
+use super::arrivals::Arrival;
 
 /// The static part of a compound transition: everything up to the first CHOICE, HISTORY or state on
 /// each of its paths.
 #[derive(Clone, PartialEq, Debug, Default)]
 pub(crate) struct StaticPath {
     pub sources: Vec<NodeId>,
-    /// In the order of their effects.
+    /// The segments, in the order in which their effects are executed.
     pub segments: Vec<TransitionId>,
     pub ends: Vec<NodeId>,
-    /// Where its region arrives by itself.
+    /// The JOIN or exit point at which its region arrives alone.
     pub arrival: Option<Arrival>,
 }
 
@@ -34,7 +34,7 @@ enum Role {
     End,
 }
 
-/// Accepts a complete path or, given a number of segments, an incomplete one.
+/// Predicate for a complete path or, with a number of segments, for an incomplete one.
 pub(crate) type Accept<'a, 'c> = &'a mut dyn FnMut(&mut Stepper<'c>, &StaticPath, Option<usize>) -> bool;
 
 impl<'c> Stepper<'c> {
@@ -54,7 +54,7 @@ impl<'c> Stepper<'c> {
         }
     }
 
-    /// An ENTRY point of an AND with several ways without guards into different regions.
+    /// Whether a node is an ENTRY point of an AND with several unguarded segments into its regions.
     fn is_fork(&self, point: NodeId) -> bool {
         let around = self.parent(point);
         let out = self.outgoing(point);
@@ -67,8 +67,8 @@ impl<'c> Stepper<'c> {
         self.kind(around) == NodeKind::And && out.len() > 1 && plain && regions.len() == out.len()
     }
 
-    /// Tries segments in their order. Those with weights are drawn, at the place of the first of
-    /// them, if there is a draw.
+    /// Tries segments in their order. If weights are used, the chooser picks among the weighted
+    /// segments at the position of the first of them.
     pub(crate) fn try_each(
         &mut self,
         list: &[TransitionId],
@@ -78,7 +78,7 @@ impl<'c> Stepper<'c> {
         for &id in list {
             let taken = match self.transition(id).weight {
                 None => attempt(self, id),
-                Some(_) if !self.chance.draws() => attempt(self, id),
+                Some(_) if !self.chooser.uses_weights() => attempt(self, id),
                 Some(_) if drawn => false,
                 Some(_) => {
                     drawn = true;
@@ -111,100 +111,104 @@ impl<'c> Stepper<'c> {
         false
     }
 
-    /// A draw is kept for the rest of the micro-step.
+    /// Picks a weighted segment; the pick holds for the rest of the micro-step.
     fn draw_one(&mut self, rest: &[TransitionId]) -> TransitionId {
         let weights: Vec<f64> = rest.iter().filter_map(|&id| self.transition(id).weight).collect();
-        let id = rest[self.chance.weighted(&weights)];
+        let id = rest[self.chooser.weighted(&weights)];
         self.drawn.push(id);
         id
     }
 
-    /// Follows segments depth-first to the first complete path that is accepted; `open` are those
-    /// still to be followed.
-    pub(crate) fn follow(&mut self, way: &StaticPath, open: &[TransitionId], accept: Accept<'_, 'c>) -> bool {
-        let Some((&segment, rest)) = open.split_first() else { return accept(self, way, None) };
-        let mut way = way.clone();
-        way.segments.push(segment);
+    /// Follows segments depth-first to the first complete path that is accepted; `open` holds the
+    /// segments that remain to be followed.
+    pub(crate) fn follow(
+        &mut self,
+        path: &StaticPath,
+        open: &[TransitionId],
+        accept: Accept<'_, 'c>,
+    ) -> bool {
+        let Some((&segment, rest)) = open.split_first() else { return accept(self, path, None) };
+        let mut path = path.clone();
+        path.segments.push(segment);
         let target = self.transition(segment).target;
-        if let Some(arrival) = self.arrival(&way, target, rest) {
-            let stopping = StaticPath { ends: vec![target], arrival: Some(arrival), ..way.clone() };
-            way.arrival = Some(Arrival { passes: true, ..arrival });
-            return accept(self, &stopping, None) || self.branch(&way, target, rest, accept);
+        if let Some(arrival) = self.arrival(&path, target, rest) {
+            let stopping = StaticPath { ends: vec![target], arrival: Some(arrival), ..path.clone() };
+            path.arrival = Some(Arrival { passes: true, ..arrival });
+            return accept(self, &stopping, None) || self.branch(&path, target, rest, accept);
         }
         match self.role(target) {
-            Role::Branch => self.branch(&way, target, rest, accept),
+            Role::Branch => self.branch(&path, target, rest, accept),
             Role::Fork => {
                 let mut all = self.outgoing(target);
                 all.sort();
                 all.extend(rest);
-                self.follow(&way, &all, accept)
+                self.follow(&path, &all, accept)
             }
-            Role::Join if !self.is_offered(target, way.sources[0]) => false,
+            Role::Join if !self.is_offered(target, path.sources[0]) => false,
             Role::Join => {
-                way.segments = self.incoming(target);
-                way.sources = way.segments.iter().map(|&id| self.transition(id).source).collect();
-                self.branch(&way, target, rest, accept)
+                path.segments = self.incoming(target);
+                path.sources = path.segments.iter().map(|&id| self.transition(id).source).collect();
+                self.branch(&path, target, rest, accept)
             }
             Role::End => {
-                way.ends.push(target);
-                self.follow(&way, rest, accept)
+                path.ends.push(target);
+                self.follow(&path, rest, accept)
             }
         }
     }
 
-    /// Whether any complete path is accepted, regardless of choices.
-    pub(crate) fn any_way(
+    /// Whether any complete path is accepted, whatever the chooser picks.
+    pub(crate) fn any_path(
         &mut self,
-        way: &StaticPath,
+        path: &StaticPath,
         open: &[TransitionId],
         accept: Accept<'_, 'c>,
     ) -> bool {
-        self.without_chance(|me| me.follow(way, open, accept))
+        self.without_choices(|me| me.follow(path, open, accept))
     }
 
-    fn without_chance(&mut self, look: impl FnOnce(&mut Stepper<'c>) -> bool) -> bool {
-        let (chance, declared) = (self.chance.clone(), crate::chance::Freedom::Declared);
-        self.chance = crate::chance::Chance::new(declared);
+    fn without_choices(&mut self, look: impl FnOnce(&mut Stepper<'c>) -> bool) -> bool {
+        let (chooser, declared) = (self.chooser.clone(), crate::chooser::ChoicePolicy::Declared);
+        self.chooser = crate::chooser::ReferenceChooser::new(declared);
         let found = look(self);
-        self.chance = chance;
+        self.chooser = chooser;
         found
     }
 
     fn branch(
         &mut self,
-        way: &StaticPath,
+        path: &StaticPath,
         node: NodeId,
         rest: &[TransitionId],
         accept: Accept<'_, 'c>,
     ) -> bool {
         let out = self.outgoing(node);
-        let drawn = self.chance.draws() && out.iter().any(|&id| self.transition(id).weight.is_some());
-        if drawn && !self.is_come_by(way, node, rest, accept) {
+        let drawn = self.chooser.uses_weights() && out.iter().any(|&id| self.transition(id).weight.is_some());
+        if drawn && !self.is_reached(path, node, rest, accept) {
             return false;
         }
         self.try_each(&out, &mut |me, id| {
             let open = [&[id], rest].concat();
-            me.follow(way, &open, accept)
+            me.follow(path, &open, accept)
         })
     }
 
-    /// Nothing is drawn at a connector that no open segments reach, on the blackboard of any path
-    /// through it.
-    fn is_come_by(
+    /// Whether a path that is enabled so far reaches a connector: only there the chooser picks.
+    fn is_reached(
         &mut self,
-        way: &StaticPath,
+        path: &StaticPath,
         node: NodeId,
         rest: &[TransitionId],
         accept: Accept<'_, 'c>,
     ) -> bool {
-        let so_far = way.segments.len();
-        self.without_chance(|me| {
-            me.branch(way, node, rest, &mut |me, whole, _| accept(me, whole, Some(so_far)))
+        let so_far = path.segments.len();
+        self.without_choices(|me| {
+            me.branch(path, node, rest, &mut |me, whole, _| accept(me, whole, Some(so_far)))
         })
     }
 
-    /// The first way out of a node that is accepted.
-    pub(crate) fn first_way(
+    /// The first accepted path out of a node.
+    pub(crate) fn first_path(
         &mut self,
         node: NodeId,
         list: &[TransitionId],
@@ -213,10 +217,10 @@ impl<'c> Stepper<'c> {
         let start = StaticPath { sources: vec![node], ..StaticPath::default() };
         let mut found = None;
         self.try_each(list, &mut |me, id| {
-            me.follow(&start, &[id], &mut |me, way, so_far| {
-                let yes = accept(me, way, so_far);
+            me.follow(&start, &[id], &mut |me, path, so_far| {
+                let yes = accept(me, path, so_far);
                 if yes && so_far.is_none() {
-                    found = Some(way.clone());
+                    found = Some(path.clone());
                 }
                 yes
             })
@@ -224,15 +228,15 @@ impl<'c> Stepper<'c> {
         found
     }
 
-    /// The path through a JOIN belongs to its first source; evaluated once, to the source that
-    /// completes.
+    /// Whether a source offers the path through a JOIN: its first source does, or, if completion
+    /// is evaluated once, the source that completes.
     fn is_offered(&self, join: NodeId, source: NodeId) -> bool {
         let sources = self.incoming(join).into_iter().map(|id| self.transition(id).source);
         self.semantics.eventless == CompletionTrigger::Once
             || sources.min_by_key(|&node| self.position(node)) == Some(source)
     }
 
-    /// The AND that JOINs' sources lie in.
+    /// The AND that contains the sources of a JOIN.
     pub(crate) fn joined_and(&self, join: NodeId) -> NodeId {
         let sources: Vec<NodeId> = self.incoming(join).iter().map(|&id| self.transition(id).source).collect();
         self.lowest_around(&sources, |kind| kind == NodeKind::And)
@@ -243,37 +247,37 @@ impl<'c> Stepper<'c> {
         into.map(|(id, _)| id).collect()
     }
 
-    /// In UML only the segment out of a state can be internal, and a path that leads out through an
-    /// exit point is not.
-    pub(crate) fn is_internal(&self, way: &StaticPath) -> bool {
+    /// Whether a transition is internal. In UML only the segment out of a state can be internal,
+    /// and a path through an exit point is not.
+    pub(crate) fn is_internal(&self, path: &StaticPath) -> bool {
         let internal = |id: &TransitionId| self.transition(*id).internal;
         if self.semantics.structure == StructureRules::Strict {
-            return way.segments.iter().any(internal);
+            return path.segments.iter().any(internal);
         }
-        let from_source = |id: &TransitionId| way.sources.contains(&self.transition(*id).source);
-        let source = way.sources[0];
+        let from_source = |id: &TransitionId| path.sources.contains(&self.transition(*id).source);
+        let source = path.sources[0];
         let inside = |node: NodeId| node == source || self.is_inside(node, source);
-        let passed = way.segments.iter().map(|&id| self.transition(id).target);
+        let passed = path.segments.iter().map(|&id| self.transition(id).target);
         let passed = passed.filter(|_| self.walks_segments());
-        way.segments.iter().any(|id| from_source(id) && internal(id))
-            && way.sources.len() == 1
-            && self.possible_targets(way).into_iter().chain(passed).all(inside)
+        path.segments.iter().any(|id| from_source(id) && internal(id))
+            && path.sources.len() == 1
+            && self.possible_targets(path).into_iter().chain(passed).all(inside)
     }
 
-    pub(crate) fn is_targetless(&self, way: &StaticPath) -> bool {
-        let direct = !self.walks_segments() || way.segments.len() == 1;
-        self.is_internal(way) && way.ends == way.sources && direct
+    pub(crate) fn is_targetless(&self, path: &StaticPath) -> bool {
+        let direct = !self.walks_segments() || path.segments.len() == 1;
+        self.is_internal(path) && path.ends == path.sources && direct
     }
 
     pub(crate) fn walks_segments(&self) -> bool {
         self.semantics.firing == Firing::EachSegment
     }
 
-    pub(crate) fn interrupts(&self, way: &StaticPath) -> bool {
-        way.segments.iter().any(|&id| self.transition(id).interrupts)
+    pub(crate) fn interrupts(&self, path: &StaticPath) -> bool {
+        path.segments.iter().any(|&id| self.transition(id).interrupts)
     }
 
-    /// Where a path may lead to in the end, whatever its CHOICEs say.
+    /// All possible targets of the paths from a node, for all outcomes of its CHOICEs.
     fn final_targets(&self, node: NodeId) -> Vec<NodeId> {
         match self.kind(node) {
             NodeKind::Choice
@@ -295,24 +299,24 @@ impl<'c> Stepper<'c> {
     }
 
     /// R2
-    pub(crate) fn scope(&self, way: &StaticPath) -> NodeId {
-        if self.is_internal(way) {
-            return way.sources[0];
+    pub(crate) fn scope(&self, path: &StaticPath) -> NodeId {
+        if self.is_internal(path) {
+            return path.sources[0];
         }
-        if let [vacated] = self.vacates(way)[..] {
+        if let [vacated] = self.vacates(path)[..] {
             return vacated;
         }
-        let mut all = way.sources.clone();
-        all.extend(self.possible_targets(way));
+        let mut all = path.sources.clone();
+        all.extend(self.possible_targets(path));
         if self.walks_segments() {
-            let passed = way.segments.iter().map(|&id| self.transition(id).target);
+            let passed = path.segments.iter().map(|&id| self.transition(id).target);
             all.extend(passed.filter(|&node| self.is_passed(node)));
         }
-        all.extend(way.arrival.map(|arrival| self.parent(arrival.region)));
+        all.extend(path.arrival.map(|arrival| self.parent(arrival.region)));
         self.lowest_around(&all, |kind| kind == NodeKind::Or)
     }
 
-    /// Whether a path goes on from a node.
+    /// Whether a path continues at a node.
     fn is_passed(&self, node: NodeId) -> bool {
         let state = matches!(
             self.kind(node),
@@ -321,14 +325,14 @@ impl<'c> Stepper<'c> {
         !state && self.kind(node) != NodeKind::Terminate && !self.stands_for_composite(node)
     }
 
-    /// An entry point that leads nowhere.
+    /// Whether a node is an entry point without segments: it stands for its composite.
     pub(crate) fn stands_for_composite(&self, node: NodeId) -> bool {
         self.kind(node) == NodeKind::EntryPoint && self.outgoing(node).is_empty()
     }
 
-    /// Where a path may lead, with the connectors on its ways. A TERMINATE at which nothing is
-    /// exited counts only if there is nothing else.
-    fn possible_targets(&self, way: &StaticPath) -> Vec<NodeId> {
+    /// All possible targets of a path and the connectors before them. A TERMINATE that exits
+    /// nothing counts only if there is no other target.
+    fn possible_targets(&self, path: &StaticPath) -> Vec<NodeId> {
         let counts = |target: &NodeId| {
             self.semantics.terminate == TerminateExit::Source || self.kind(*target) != NodeKind::Terminate
         };
@@ -338,20 +342,20 @@ impl<'c> Stepper<'c> {
             let connectors_only = some.iter().all(|&node| self.is_passed(node) && !self.is_history(node));
             if connectors_only { targets.into_iter().filter(|node| !counts(node)).collect() } else { some }
         };
-        way.ends.iter().flat_map(behind).collect()
+        path.ends.iter().flat_map(behind).collect()
     }
 
     fn is_history(&self, node: NodeId) -> bool {
         matches!(self.kind(node), NodeKind::ShallowHistory | NodeKind::DeepHistory)
     }
 
-    /// R13: a way all of whose possible ends are TERMINATE leaves and enters nothing, unless its
-    /// source is exited; where it may also lead elsewhere, its scope is that of the other ends.
-    pub(crate) fn only_terminates(&self, way: &StaticPath) -> bool {
-        let targets = way.ends.iter().flat_map(|&end| self.final_targets(end));
+    /// R13: a path whose only possible targets are TERMINATE exits and enters nothing, unless its
+    /// source is exited. With other targets, those determine its scope.
+    pub(crate) fn only_terminates(&self, path: &StaticPath) -> bool {
+        let targets = path.ends.iter().flat_map(|&end| self.final_targets(end));
         let mut ends = targets.filter(|&node| !self.is_passed(node) || self.is_history(node));
         self.semantics.terminate == TerminateExit::Nothing
-            && way.arrives().is_none()
+            && path.arrives().is_none()
             && ends.all(|target| self.kind(target) == NodeKind::Terminate)
     }
 
@@ -360,39 +364,39 @@ impl<'c> Stepper<'c> {
         self.chart.ancestors(nodes[0]).find(|outer| wanted(self.kind(*outer)) && around(outer)).unwrap()
     }
 
-    /// The composites that stay but lose what is active in them: `uml`'s arrival at a JOIN, and its
-    /// way to an active ancestor.
-    pub(crate) fn vacates(&self, way: &StaticPath) -> Vec<NodeId> {
-        let [end] = way.ends[..] else { return vec![] };
-        if let Some(arrival) = way.arrives() {
+    /// Composites that stay active while their content is exited: by an arrival at a JOIN or a
+    /// transition to an active ancestor under `uml`.
+    pub(crate) fn vacates(&self, path: &StaticPath) -> Vec<NodeId> {
+        let [end] = path.ends[..] else { return vec![] };
+        if let Some(arrival) = path.arrives() {
             return vec![arrival.region];
         }
-        if !self.completes_ancestor(way, end) {
+        if !self.completes_ancestor(path, end) {
             return vec![];
         }
         let around = end;
         match self.kind(around) {
-            NodeKind::And => way.sources.iter().map(|&source| self.child_towards(around, source)).collect(),
+            NodeKind::And => path.sources.iter().map(|&source| self.child_towards(around, source)).collect(),
             _ => vec![around],
         }
     }
 
-    fn completes_ancestor(&self, way: &StaticPath, end: NodeId) -> bool {
+    fn completes_ancestor(&self, path: &StaticPath, end: NodeId) -> bool {
         self.semantics.ancestor == TransitionToAncestor::Completed
-            && !self.is_internal(way)
+            && !self.is_internal(path)
             && matches!(self.kind(end), NodeKind::Or | NodeKind::And)
-            && way.sources.len() == 1
-            && self.is_inside(way.sources[0], end)
-            && (!self.walks_segments() || self.stays_beside(way, end))
+            && path.sources.len() == 1
+            && self.is_inside(path.sources[0], end)
+            && (!self.walks_segments() || self.stays_beside(path, end))
     }
 
-    /// Whether the connectors of a path lie in the composite that it completes.
-    fn stays_beside(&self, way: &StaticPath, end: NodeId) -> bool {
+    /// Whether all connectors of a path lie in the composite that the path completes.
+    fn stays_beside(&self, path: &StaticPath, end: NodeId) -> bool {
         let vacated = match self.kind(end) {
-            NodeKind::And => self.child_towards(end, way.sources[0]),
+            NodeKind::And => self.child_towards(end, path.sources[0]),
             _ => end,
         };
-        let passed = way.segments.iter().map(|&id| self.transition(id).target);
+        let passed = path.segments.iter().map(|&id| self.transition(id).target);
         passed.filter(|&node| node != end).all(|node| self.is_inside(node, vacated))
     }
 
@@ -400,19 +404,19 @@ impl<'c> Stepper<'c> {
         self.outward(inner).into_iter().find(|&node| self.chart.node(node).parent == Some(outer)).unwrap()
     }
 
-    /// The active states a way would leave.
-    pub(crate) fn exit_set(&self, way: &StaticPath) -> BTreeSet<NodeId> {
-        if self.is_targetless(way) || self.only_terminates(way) {
+    /// The active states that a path would exit.
+    pub(crate) fn exit_set(&self, path: &StaticPath) -> BTreeSet<NodeId> {
+        if self.is_targetless(path) || self.only_terminates(path) {
             return BTreeSet::new();
         }
-        let mut vacated = self.vacates(way);
+        let mut vacated = self.vacates(path);
         if vacated.is_empty() {
-            vacated.push(self.scope(way));
+            vacated.push(self.scope(path));
         }
         vacated.into_iter().flat_map(|outer| self.active_inside(outer)).collect()
     }
 
-    /// States in the order they are left.
+    /// States in the order in which they are exited.
     pub(crate) fn in_order_of_exit(&self, set: &BTreeSet<NodeId>) -> Vec<NodeId> {
         fn visit(stepper: &Stepper<'_>, node: NodeId, set: &BTreeSet<NodeId>, out: &mut Vec<NodeId>) {
             for &child in stepper.chart.children(node) {
@@ -432,7 +436,7 @@ impl<'c> Stepper<'c> {
         }
     }
 
-    pub(crate) fn would_leave(&self, way: &StaticPath, node: NodeId) -> bool {
-        self.exit_set(way).contains(&node)
+    pub(crate) fn would_leave(&self, path: &StaticPath, node: NodeId) -> bool {
+        self.exit_set(path).contains(&node)
     }
 }

@@ -5,12 +5,12 @@ use yase::{ScopeId, SegmentOrder};
 
 use super::Stepper;
 
-/// What does not change, looked up once.
+/// Structure of the chart, derived once.
 pub(crate) struct Tree {
-    /// Immutable data, computed once.
+    /// Structure of the chart, derived once.
     pub document: Vec<NodeId>,
     pub position: Vec<usize>,
-    /// Whether a node lies inside another: by the outer one, then the inner one.
+    /// Whether a node lies inside another, indexed by the outer node, then the inner one.
     pub inside: Vec<Vec<bool>>,
     /// The root and every region of an AND, in document order.
     pub regions: Vec<NodeId>,
@@ -63,7 +63,7 @@ fn document(chart: &Statechart) -> Vec<NodeId> {
     out
 }
 
-/// The root and regions, whose content shares it, and composites with an activity.
+/// Nodes with a blackboard: the root, regions, and composites with an activity.
 fn owns_blackboard(chart: &Statechart, node: NodeId) -> bool {
     let it = chart.node(node);
     let runs = it.activity.is_some() && it.kind != NodeKind::Basic;
@@ -77,7 +77,7 @@ fn is_region(chart: &Statechart, node: NodeId) -> bool {
     it.parent.is_some_and(|parent| chart.node(parent).kind == NodeKind::And) && states.contains(&it.kind)
 }
 
-/// R3: priority, then guarded ones, then the order of the model.
+/// R3: by priority, then guarded before unguarded, then in the order of the model.
 fn outgoing(chart: &Statechart, node: NodeId, order: SegmentOrder) -> Vec<TransitionId> {
     let leaving = chart.transitions().filter(|(_, transition)| transition.source == node);
     let mut out: Vec<TransitionId> = leaving.map(|(id, _)| id).collect();
@@ -124,7 +124,8 @@ impl Stepper<'_> {
         is_region(self.chart, node)
     }
 
-    /// R19: the blackboard of a node: that of the nearest region around it, itself included.
+    /// R19: the blackboard of a node, which is that of the innermost region that contains it; a
+    /// region contains itself.
     pub(crate) fn region(&self, node: NodeId) -> ScopeId {
         self.tree.region[node.0 as usize]
     }
@@ -142,13 +143,13 @@ impl Stepper<'_> {
         self.tree.document.iter().copied().filter(inside).collect()
     }
 
-    /// Active without an active child: a state without children, START, END, or a vacated region.
+    /// Active nodes without an active child: states without children, START, END, vacated regions.
     pub(crate) fn active_leaves(&self) -> Vec<NodeId> {
         let leaf = |node: &NodeId| self.active_children(*node).is_empty();
         self.active_in_document_order().into_iter().filter(leaf).collect()
     }
 
-    /// From a node to the root.
+    /// The node and its ancestors, up to the root.
     pub(crate) fn outward(&self, node: NodeId) -> Vec<NodeId> {
         std::iter::once(node).chain(self.chart.ancestors(node)).collect()
     }

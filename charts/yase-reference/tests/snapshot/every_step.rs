@@ -6,7 +6,7 @@ use std::sync::Arc;
 use yase::snapshot::Snapshot;
 use yase::{Activation, Chooser, CompiledChart, Machine, MicroStep, Outcome, Timestamp, TopicId};
 
-use yase_reference::chance::Freedom;
+use yase_reference::chooser::ChoicePolicy;
 use yase_reference::random::Case;
 use yase_reference::script::{self, Interpreter};
 use yase_reference::test_host::{TestHost, vocabulary};
@@ -73,10 +73,10 @@ fn compile(case: &Case) -> Arc<CompiledChart> {
 
 fn machine(chart: &Arc<CompiledChart>, case: &Case) -> Machine {
     let mut machine = Machine::new(chart.clone());
-    machine.set_chooser(match &case.freedom {
-        Freedom::Declared => Chooser::declared(),
-        Freedom::Seeded(seed) => Chooser::seeded(*seed),
-        Freedom::Scripted(choices) => Chooser::scripted(choices.clone()),
+    machine.set_chooser(match &case.policy {
+        ChoicePolicy::Declared => Chooser::declared(),
+        ChoicePolicy::Seeded(seed) => Chooser::seeded(*seed),
+        ChoicePolicy::Scripted(choices) => Chooser::scripted(choices.clone()),
     });
     machine
 }

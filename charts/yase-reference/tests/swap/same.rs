@@ -8,7 +8,7 @@ use yase::statechart::{NodeId, Statechart, Transition};
 use yase::{Activation, Chooser, CompiledChart, Machine, Outcome, Semantics, Timestamp, TopicId};
 
 use crate::stage::rekey;
-use yase_reference::chance::Freedom;
+use yase_reference::chooser::ChoicePolicy;
 use yase_reference::random::Case;
 use yase_reference::script::{self, Interpreter};
 use yase_reference::test_host::TestHost;
@@ -57,10 +57,10 @@ fn compile(chart: &Statechart, semantics: Semantics) -> Arc<CompiledChart> {
 
 fn machine(chart: Arc<CompiledChart>, case: &Case) -> Machine {
     let mut machine = Machine::new(chart);
-    machine.set_chooser(match &case.freedom {
-        Freedom::Declared => Chooser::declared(),
-        Freedom::Seeded(seed) => Chooser::seeded(*seed),
-        Freedom::Scripted(choices) => Chooser::scripted(choices.clone()),
+    machine.set_chooser(match &case.policy {
+        ChoicePolicy::Declared => Chooser::declared(),
+        ChoicePolicy::Seeded(seed) => Chooser::seeded(*seed),
+        ChoicePolicy::Scripted(choices) => Chooser::scripted(choices.clone()),
     });
     machine
 }

@@ -44,7 +44,7 @@ impl Maker<'_, '_> {
         }
     }
 
-    /// A guard that its own effect makes false, so that a chart becomes stable.
+    /// A guard that the transition's own effect makes false, so that a chart becomes stable.
     pub(crate) fn passing_guard(&mut self) -> String {
         let message = self.choices.pick(&["A", "B", "C"]);
         let number = self.choices.below(3);
@@ -103,7 +103,7 @@ impl Maker<'_, '_> {
     }
 }
 
-/// Both parts may contain actions.
+/// Actions before and after the slash.
 pub(crate) fn parse(text: &str) -> TransitionExpression {
     let mut parts = text.split(" / ");
     let head = parts.next().unwrap_or_default();

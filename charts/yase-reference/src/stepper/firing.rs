@@ -5,30 +5,30 @@ use std::collections::BTreeSet;
 use yase::statechart::{NodeId, NodeKind, TransitionId};
 use yase::{ActivityOnExit, Host, RootCompletion, ScopeId, Statechart};
 
-use super::arrive::Arrival;
+use super::arrivals::Arrival;
 use super::{Failure, Phase, StaticPath, Stepper};
 use crate::test_host::TestHost;
 
 impl Stepper<'_> {
-    /// Fires one transition after the other, without those whose source an earlier one has exited,
-    /// even if it is active again.
+    /// Fires transitions one by one. A transition whose source was exited by an earlier one is
+    /// skipped, even if the source is active again.
     pub(crate) fn fire_each(
         &mut self,
-        ways: Vec<StaticPath>,
+        paths: Vec<StaticPath>,
         host: &mut TestHost,
     ) -> Result<Vec<StaticPath>, Failure> {
         let mut fired = vec![];
-        let exits: Vec<BTreeSet<NodeId>> = ways.iter().map(|way| self.exit_set(way)).collect();
+        let exits: Vec<BTreeSet<NodeId>> = paths.iter().map(|path| self.exit_set(path)).collect();
         let mut left = BTreeSet::new();
-        self.taken = ways.clone();
-        for (way, exits) in ways.into_iter().zip(exits) {
+        self.taken = paths.clone();
+        for (path, exits) in paths.into_iter().zip(exits) {
             let stays = |source: &NodeId| self.active.contains(source) && !left.contains(source);
-            if self.running_chart && !self.ended && way.sources.iter().all(stays) {
-                self.fire(&way, host)?;
+            if self.running_chart && !self.ended && path.sources.iter().all(stays) {
+                self.fire(&path, host)?;
                 left.extend(exits);
-                fired.push(way);
+                fired.push(path);
             } else {
-                self.taken.retain(|other| *other != way);
+                self.taken.retain(|other| *other != path);
             }
         }
         self.taken.clear();
@@ -36,24 +36,24 @@ impl Stepper<'_> {
     }
 
     /// Whether all sources are still active.
-    pub(crate) fn may_fire(&self, way: &StaticPath) -> bool {
-        way.sources.iter().all(|source| self.active.contains(source))
+    pub(crate) fn may_fire(&self, path: &StaticPath) -> bool {
+        path.sources.iter().all(|source| self.active.contains(source))
     }
 
-    pub(crate) fn fire(&mut self, way: &StaticPath, host: &mut TestHost) -> Result<(), Failure> {
-        let early = self.ends_early(way);
+    pub(crate) fn fire(&mut self, path: &StaticPath, host: &mut TestHost) -> Result<(), Failure> {
+        let early = self.ends_early(path);
         if self.walks_segments() {
-            self.walk_whole(way, early, host)?;
+            self.walk_whole(path, early, host)?;
         } else {
-            let exits = self.exits_of(way, early);
+            let exits = self.exits_of(path, early);
             self.leave_all(&exits, host);
-            let targets = self.effects_and_targets(way, early, host)?;
+            let targets = self.effects_and_targets(path, early, host)?;
             if !self.is_ended() {
-                self.enter_targets(way, early, &targets, host)?;
+                self.enter_targets(path, early, &targets, host)?;
             }
         }
         if self.walks_segments() && !self.is_ended() {
-            self.settle(way, early);
+            self.settle(path, early);
         }
         self.halt_if_terminated(host);
         Ok(())
@@ -66,72 +66,72 @@ impl Stepper<'_> {
         }
     }
 
-    /// Nothing is entered any more.
+    /// Whether the chart has ended, so that no state is entered.
     pub(crate) fn is_ended(&self) -> bool {
         self.terminates || !self.running_chart
     }
 
-    /// All exits, then all effects, then all entries.
+    /// Fires transitions in phases: all exits, then all effects, then all entries.
     pub(crate) fn fire_phases(
         &mut self,
-        ways: Vec<StaticPath>,
+        paths: Vec<StaticPath>,
         host: &mut TestHost,
     ) -> Result<Vec<StaticPath>, Failure> {
-        let ways = self.with_their_sources(ways);
-        self.taken = ways.clone();
-        let early: Vec<Option<Arrival>> = ways.iter().map(|way| self.ends_early(way)).collect();
+        let paths = self.with_their_sources(paths);
+        self.taken = paths.clone();
+        let early: Vec<Option<Arrival>> = paths.iter().map(|path| self.ends_early(path)).collect();
         let exits: BTreeSet<NodeId> =
-            ways.iter().zip(&early).flat_map(|(way, early)| self.exits_of(way, *early)).collect();
+            paths.iter().zip(&early).flat_map(|(path, early)| self.exits_of(path, *early)).collect();
         self.leave_all(&exits, host);
         let (mut entering, mut stops) = (vec![], false);
-        for (way, early) in ways.iter().zip(early) {
-            let targets = self.effects_and_targets(way, early, host)?;
+        for (path, early) in paths.iter().zip(early) {
+            let targets = self.effects_and_targets(path, early, host)?;
             match std::mem::take(&mut self.terminates) {
-                true => stops = true, // when what the others lead to has been entered
-                false => entering.push((way.clone(), early, targets)),
+                true => stops = true, // after the targets of the others have been entered
+                false => entering.push((path.clone(), early, targets)),
             }
         }
-        entering.sort_by_key(|(way, ..)| self.position(self.scope(way)));
-        for (way, early, targets) in entering {
+        entering.sort_by_key(|(path, ..)| self.position(self.scope(path)));
+        for (path, early, targets) in entering {
             if !self.is_ended() {
-                self.enter_targets(&way, early, &targets, host)?;
+                self.enter_targets(&path, early, &targets, host)?;
             }
         }
         self.taken.clear();
         self.terminates |= stops;
         self.halt_if_terminated(host);
-        Ok(ways)
+        Ok(paths)
     }
 
-    /// Removes transitions with a target whose source another one exits: they are only selected
-    /// because nothing is active in it.
-    fn with_their_sources(&self, mut ways: Vec<StaticPath>) -> Vec<StaticPath> {
+    /// Removes transitions with targets whose source another transition exits: they were selected
+    /// only because nothing is active in the source.
+    fn with_their_sources(&self, mut paths: Vec<StaticPath>) -> Vec<StaticPath> {
         let mut index = 0;
-        while index < ways.len() {
-            let way = &ways[index];
-            let stays = self.is_targetless(way)
-                || self.only_terminates(way)
-                || way.arrives().is_some()
-                || self.kind(self.scope(way)) == NodeKind::Basic; // nothing is in it that could be left
-            let mut others = ways.iter().enumerate().filter(|(other, _)| *other != index);
+        while index < paths.len() {
+            let path = &paths[index];
+            let stays = self.is_targetless(path)
+                || self.only_terminates(path)
+                || path.arrives().is_some()
+                || self.kind(self.scope(path)) == NodeKind::Basic; // it has no content to exit
+            let mut others = paths.iter().enumerate().filter(|(other, _)| *other != index);
             let is_left = others.any(|(_, other)| {
                 let left = self.exit_set(other);
-                way.sources.iter().any(|source| left.contains(source))
+                path.sources.iter().any(|source| left.contains(source))
             });
             if is_left && !stays {
-                ways.remove(index);
+                paths.remove(index);
             } else {
                 index += 1;
             }
         }
-        ways
+        paths
     }
 
-    /// What a way leaves.
-    fn exits_of(&self, way: &StaticPath, early: Option<Arrival>) -> BTreeSet<NodeId> {
+    /// The states that a path exits.
+    fn exits_of(&self, path: &StaticPath, early: Option<Arrival>) -> BTreeSet<NodeId> {
         match early {
             Some(arrival) => self.active_inside(arrival.region).into_iter().collect(),
-            None => self.exit_set(way),
+            None => self.exit_set(path),
         }
     }
 
@@ -152,7 +152,7 @@ impl Stepper<'_> {
                 };
                 let empty = self.active_inside(owner).is_empty();
                 if empty && !self.vacated.contains(&owner) {
-                    continue; // an exit point has emptied it
+                    continue; // an exit point has vacated it
                 }
                 if record.is_empty() && self.kind(owner) == NodeKind::Or {
                     self.records.remove(&child); // it was vacated
@@ -176,7 +176,7 @@ impl Stepper<'_> {
         let actions = self.chart.node(node).exit.clone();
         let before = std::mem::take(&mut self.unbound);
         self.act(&actions, self.region(node), &format!("exit {}", self.name(node)), host);
-        let started = std::mem::replace(&mut self.unbound, before); // belongs to no state
+        let started = std::mem::replace(&mut self.unbound, before); // bound to no state
         self.unbound.retain(|key| !started.contains(key));
         self.active.remove(&node);
         self.waiting.remove(&node);
@@ -187,22 +187,22 @@ impl Stepper<'_> {
         self.line.exits.push(node);
     }
 
-    /// Executes the effects of the complete compound transition, with its CHOICEs evaluated on the
-    /// way; returns its targets.
+    /// Executes the effects of the compound transition, evaluating its CHOICEs between segments;
+    /// returns its targets.
     fn effects_and_targets(
         &mut self,
-        way: &StaticPath,
+        path: &StaticPath,
         early: Option<Arrival>,
         host: &mut TestHost,
     ) -> Result<Vec<NodeId>, Failure> {
-        let region = self.region(self.scope(way));
+        let region = self.region(self.scope(path));
         if let Some(arrival) = early {
-            self.effects(&way.segments[..=arrival.segment], region, host);
+            self.effects(&path.segments[..=arrival.segment], region, host);
             self.bind_timers(None);
             return Ok(vec![]);
         }
-        self.effects(&way.segments, region, host);
-        let targets = self.choose(&way.ends, region, host)?;
+        self.effects(&path.segments, region, host);
+        let targets = self.choose(&path.ends, region, host)?;
         self.bind_timers(targets.first().copied());
         Ok(targets)
     }
@@ -225,7 +225,7 @@ impl Stepper<'_> {
         let mut targets = vec![];
         for &end in ends {
             if self.terminates {
-                break; // nothing happens behind TERMINATE
+                break; // segments after TERMINATE have no effect
             }
             if self.kind(end) != NodeKind::Choice {
                 self.terminates = self.kind(end) == NodeKind::Terminate;
@@ -234,46 +234,46 @@ impl Stepper<'_> {
             }
             let out = self.outgoing(end);
             let found =
-                self.first_way(end, &out, &mut |me, way, so_far| me.all_hold(way, so_far, region, host));
-            let Some(way) = found else { return Err(Failure::NoBranch(end)) };
-            self.line.taken.extend(&way.segments);
-            self.effects(&way.segments, region, host);
-            targets.extend(self.choose(&way.ends, region, host)?);
+                self.first_path(end, &out, &mut |me, path, so_far| me.all_hold(path, so_far, region, host));
+            let Some(path) = found else { return Err(Failure::NoBranch(end)) };
+            self.line.taken.extend(&path.segments);
+            self.effects(&path.segments, region, host);
+            targets.extend(self.choose(&path.ends, region, host)?);
         }
         Ok(targets)
     }
 
     fn enter_targets(
         &mut self,
-        way: &StaticPath,
+        path: &StaticPath,
         early: Option<Arrival>,
         targets: &[NodeId],
         host: &mut TestHost,
     ) -> Result<(), Failure> {
-        self.settle(way, early);
-        if early.is_none() && self.vacates(way).is_empty() && !self.is_targetless(way) {
-            self.enter_below(self.scope(way), targets, host)?;
+        self.settle(path, early);
+        if early.is_none() && self.vacates(path).is_empty() && !self.is_targetless(path) {
+            self.enter_below(self.scope(path), targets, host)?;
         }
         Ok(())
     }
 
-    /// What a way leaves without an active child, and its arrival.
-    fn settle(&mut self, way: &StaticPath, early: Option<Arrival>) {
-        let arrival = early.or(way.arrives());
+    /// Records the composites that a path vacates, and its arrival.
+    fn settle(&mut self, path: &StaticPath, early: Option<Arrival>) {
+        let arrival = early.or(path.arrives());
         let vacated = match early {
             Some(arrival) => vec![arrival.region],
-            None => self.vacates(way),
+            None => self.vacates(path),
         };
         for &node in &vacated {
             let is_filled = self.chart.children(node).iter().any(|child| self.active.contains(child));
             if self.kind(node) == NodeKind::Basic || !self.active.contains(&node) || is_filled {
-                // a BASIC region has nothing to exit; in phases another may have exited or
-                // re-entered it before
+                // a BASIC region has nothing to exit; in phases another transition may have
+                // exited or re-entered it before
                 continue;
             }
             self.vacated.insert(node);
             match arrival {
-                Some(_) => self.complete_around(node), // for the region it is no news
+                Some(_) => self.complete_around(node), // the region itself has completed before
                 None => self.completed(node),
             }
         }

@@ -1,11 +1,11 @@
-//! The line of a micro-step: R23.
+//! Log line of a micro-step: R23.
 
 use yase::statechart::{NodeId, StateNames, TransitionId};
 
 use super::{Failure, Line, StaticPath, Stepper, topic};
 use crate::test_host::TestHost;
 
-/// The static content of a line.
+/// The part of a line that is known when the micro-step begins.
 #[derive(Default)]
 pub(crate) struct Heading<'a> {
     pub event: Option<&'a str>,
@@ -20,11 +20,11 @@ impl Stepper<'_> {
         nodes.iter().map(|&node| self.name(node)).collect::<Vec<_>>().join(", ")
     }
 
-    fn way_names(&self, ways: &[StaticPath]) -> String {
-        ways.iter().map(|way| self.chain(&way.segments)).collect::<Vec<_>>().join(", ")
+    fn path_names(&self, paths: &[StaticPath]) -> String {
+        paths.iter().map(|path| self.chain(&path.segments)).collect::<Vec<_>>().join(", ")
     }
 
-    /// `a -> CONDITION -> b`, and ` + ` where a segment does not go on from the one before.
+    /// `a -> CONDITION -> b`, with ` + ` before a segment that does not continue the previous one.
     fn chain(&self, segments: &[TransitionId]) -> String {
         let mut text = String::new();
         let mut at = None;
@@ -42,7 +42,7 @@ impl Stepper<'_> {
 
     fn event_name(&self, event: &str) -> String {
         match topic(event) {
-            Some(_) => event.to_lowercase(), // messages are known by their topic
+            Some(_) => event.to_lowercase(), // messages are named by their topic
             None => self.known_name(event).unwrap_or_else(|| "?".to_owned()),
         }
     }
@@ -50,15 +50,15 @@ impl Stepper<'_> {
     pub(crate) fn print(&mut self, heading: &Heading<'_>, host: &mut TestHost) {
         let idle = heading.held.is_empty() && heading.deferring.is_none();
         let selected = match (heading.fired.is_empty(), heading.event.is_some() && idle) {
-            (false, _) => self.way_names(heading.fired),
+            (false, _) => self.path_names(heading.fired),
             (true, true) => "dropped".to_owned(),
             (true, false) => "nothing".to_owned(),
         };
         let event = heading.event.map_or("-".to_owned(), |event| self.event_name(event));
         let mut text = format!("{} {event}: {selected}", self.now);
         let parts = [
-            ("preempt", self.way_names(heading.losers)),
-            ("hold", self.way_names(heading.held)),
+            ("preempt", self.path_names(heading.losers)),
+            ("hold", self.path_names(heading.held)),
             ("defer in", heading.deferring.map(|node| self.name(node)).unwrap_or_default()),
         ];
         for (title, part) in parts {

@@ -35,22 +35,22 @@ impl Stepper<'_> {
     /// R5: on the blackboard of the scope.
     pub(crate) fn guards_hold(
         &mut self,
-        way: &StaticPath,
+        path: &StaticPath,
         so_far: Option<usize>,
         host: &mut TestHost,
     ) -> bool {
-        let region = self.region(self.scope(way));
-        self.all_hold(way, so_far, region, host)
+        let region = self.region(self.scope(path));
+        self.all_hold(path, so_far, region, host)
     }
 
     pub(crate) fn all_hold(
         &mut self,
-        way: &StaticPath,
+        path: &StaticPath,
         so_far: Option<usize>,
         region: ScopeId,
         host: &mut TestHost,
     ) -> bool {
-        let segments = &way.segments[..so_far.unwrap_or(way.segments.len())];
+        let segments = &path.segments[..so_far.unwrap_or(path.segments.len())];
         segments.iter().all(|&id| self.holds(id, region, host))
     }
 
@@ -80,7 +80,7 @@ impl Stepper<'_> {
         }
     }
 
-    /// True, false, or unknown.
+    /// Value of a condition; none if it is unknown.
     pub(crate) fn truth(
         &self,
         expression: &Expression,

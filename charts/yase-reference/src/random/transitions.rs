@@ -3,7 +3,7 @@
 use yase::statechart::{NodeId, NodeKind, Statechart, Transition};
 
 use super::Maker;
-use super::words::parse;
+use super::expressions::parse;
 
 fn is_state(kind: NodeKind) -> bool {
     matches!(kind, NodeKind::Or | NodeKind::And | NodeKind::Basic)
@@ -13,7 +13,7 @@ fn is_history(kind: NodeKind) -> bool {
     matches!(kind, NodeKind::ShallowHistory | NodeKind::DeepHistory)
 }
 
-/// What leads into a composite without being a state.
+/// Whether a node is a border node through which transitions enter a composite.
 fn is_border(kind: NodeKind) -> bool {
     is_history(kind) || kind == NodeKind::EntryPoint
 }
@@ -81,7 +81,7 @@ impl Maker<'_, '_> {
         }
     }
 
-    /// Mostly one of those given; sometimes a descendant.
+    /// Mostly one of the given nodes, sometimes a descendant of the composite.
     fn near_or_deep(&mut self, composite: NodeId, near: &[NodeId]) -> NodeId {
         if self.choices.percent(12) {
             let deep = self.inside(composite, |kind| is_state(kind) || is_history(kind));
@@ -93,7 +93,8 @@ impl Maker<'_, '_> {
         self.choices.pick(near)
     }
 
-    /// Two transitions to siblings, not to preceding connectors, so that connectors form no cycle.
+    /// Adds two transitions to siblings, not to preceding connectors, so that connectors form no
+    /// cycle.
     fn out_of_branch(&mut self, connector: NodeId) {
         let all = self.children(self.parent(connector), |kind| {
             is_state(kind)
@@ -109,14 +110,14 @@ impl Maker<'_, '_> {
         let second = self.choices.pick(&all);
         let percent = if self.kind(connector) == NodeKind::Choice { 3 } else { 10 };
         let guard = match self.choices.percent(percent) {
-            true => self.guard(), // no way need be open
+            true => self.guard(), // possibly no path is enabled
             false => String::new(),
         };
         let text = format!("{guard} {}", self.slash_actions(20));
         self.connect(connector, second, &text);
     }
 
-    /// To two regions or more of an AND in the same composite.
+    /// Adds transitions to two or more regions of an AND in the same composite.
     fn out_of_fork(&mut self, fork: NodeId) {
         let ands = self.inside(self.parent(fork), |kind| kind == NodeKind::And);
         let and = self.choices.pick(&ands);
@@ -140,7 +141,8 @@ impl Maker<'_, '_> {
         }
     }
 
-    /// From two regions or more of an AND in the same composite, and on to a sibling.
+    /// Adds transitions from two or more regions of an AND in the same composite, and one to a
+    /// sibling.
     fn around_join(&mut self, join: NodeId) {
         let ands = self.inside(self.parent(join), |kind| kind == NodeKind::And);
         let and = self.choices.pick(&ands);
@@ -171,8 +173,8 @@ impl Maker<'_, '_> {
         self.connect(join, target, &text);
     }
 
-    /// Without a default, or if its guard is false, a history leads to START; if START itself leads
-    /// to the history, the chart stays there.
+    /// Adds a default to a history. Without one, or if its guard is false, a history leads to
+    /// START; if START leads to the history, the chart stays at START.
     fn out_of_history(&mut self, history: NodeId) {
         if self.choices.percent(50) {
             let inside = self.inside(self.parent(history), |kind| is_state(kind) || kind == NodeKind::End);
@@ -212,7 +214,7 @@ impl Maker<'_, '_> {
         }
     }
 
-    /// From a state in each region of an AND, sometimes by an event.
+    /// Adds a transition from a state in each region of an AND, sometimes with an event.
     fn regions_to_exit(&mut self, and: NodeId, point: NodeId) {
         for region in self.children(and, is_state) {
             let inside = self.inside(region, |kind| kind == NodeKind::Basic);
@@ -264,14 +266,14 @@ impl Maker<'_, '_> {
         self.chart.connect(transition);
     }
 
-    /// Whether a chart with only such transitions becomes stable.
+    /// Whether a chart that has only transitions of this kind becomes stable.
     fn leads_on(&self, source: NodeId, target: NodeId) -> bool {
         let region = self.kind(self.parent(source)) == NodeKind::And;
         let border = is_border(self.kind(target)) || is_branch(self.kind(target));
         target > source && !self.is_inside(target, source) && !region && !border
     }
 
-    /// Sometimes a transition to END for a BASIC state, and one for a completed composite.
+    /// Sometimes adds a transition to END from a BASIC state or a completed composite.
     fn towards_ends(&mut self, node: NodeId) {
         let composite = self.kind(node) != NodeKind::Basic;
         let wanted = if composite { is_state } else { |kind: NodeKind| kind == NodeKind::End };
@@ -285,7 +287,7 @@ impl Maker<'_, '_> {
         }
     }
 
-    /// Itself, or something inside.
+    /// The node or one of its descendants.
     fn local_target(&mut self, node: NodeId) -> NodeId {
         let inside = self.inside(node, is_state);
         match inside.is_empty() || self.choices.percent(40) {
@@ -300,7 +302,8 @@ impl Maker<'_, '_> {
         self.chart.connect(transition);
     }
 
-    /// Connectors from their own composite only, borders from their side.
+    /// Whether a target is legal: connectors are reached only from their own composite, border
+    /// points from their side.
     fn is_legal(&self, source: NodeId, target: NodeId) -> bool {
         let same = self.parent(source) == self.parent(target);
         let owner = self.parent(target);
@@ -314,15 +317,15 @@ impl Maker<'_, '_> {
         }
     }
 
-    /// Sources of connectors only in their own composite, of border points only on their side.
+    /// Whether a source is legal: sources of connectors lie in the same composite, sources of
+    /// border points on their side.
     pub(crate) fn weights(&mut self) {
         let nodes: Vec<NodeId> = self.chart.nodes().map(|(id, _)| id).collect();
         for node in nodes {
             let transitions = self.chart.transitions();
             let mut out: Vec<_> = transitions.filter(|(_, it)| it.source == node).map(|(id, _)| id).collect();
             out.retain(|&id| self.kind(self.chart.transition(id).target) != NodeKind::Join);
-            // all transitions out of a FORK are taken, and so are those of border points of ANDs
-            // that fork
+            // all transitions out of a FORK are taken, also those of forking border points of ANDs
             let forks = self.kind(node) == NodeKind::Fork
                 || self.kind(node) == NodeKind::EntryPoint && self.kind(self.parent(node)) == NodeKind::And;
             let percent = if is_state(self.kind(node)) { 10 } else { 20 };

@@ -7,8 +7,8 @@ use super::{Failure, Job, Phase, StaticPath, Stepper};
 use crate::test_host::TestHost;
 
 impl Stepper<'_> {
-    /// Enters the descendants of an active composite that lead to targets, and those entered with
-    /// them.
+    /// Enters the descendants of an active composite on the path to targets, and the states entered
+    /// with them.
     pub(crate) fn enter_below(
         &mut self,
         composite: NodeId,
@@ -62,7 +62,7 @@ impl Stepper<'_> {
         Ok(())
     }
 
-    /// Entering stops at START, or goes on at once.
+    /// Enters START; depending on the semantics entry stops there or continues at once.
     fn enter_start(&mut self, composite: NodeId, host: &mut TestHost) -> Result<(), Failure> {
         let mut children = self.chart.children(composite).iter().copied();
         let Some(start) = children.find(|&child| self.kind(child) == NodeKind::Start) else {
@@ -71,39 +71,38 @@ impl Stepper<'_> {
             return Ok(());
         };
         if self.semantics.start == InitialState::SameStep
-            && let Some(way) = self.open_way(start, host)
+            && let Some(path) = self.open_path(start, host)
         {
-            return self.go_on(&way, composite, Some(start), host);
+            return self.go_on(&path, composite, Some(start), host);
         }
         self.enter(start, host);
         Ok(())
     }
 
-    /// The way out of START or HISTORY that is open now.
-    fn open_way(&mut self, connector: NodeId, host: &mut TestHost) -> Option<StaticPath> {
+    /// The enabled path out of START or HISTORY.
+    fn open_path(&mut self, connector: NodeId, host: &mut TestHost) -> Option<StaticPath> {
         let out = self.outgoing(connector);
-        // the blackboard of the composite, also where its way leads from an AND's HISTORY into a
-        // region
+        // the blackboard of the composite, even for a path from an AND's HISTORY into a region
         let region = self.region(self.parent(connector));
-        self.first_way(connector, &out, &mut |me, way, so_far| me.all_hold(way, so_far, region, host))
+        self.first_path(connector, &out, &mut |me, path, so_far| me.all_hold(path, so_far, region, host))
     }
 
     /// `start` is the START of the current path: a HISTORY without transitions leads back to it,
     /// where entering ends.
     fn go_on(
         &mut self,
-        way: &StaticPath,
+        path: &StaticPath,
         composite: NodeId,
         start: Option<NodeId>,
         host: &mut TestHost,
     ) -> Result<(), Failure> {
         let outer = std::mem::take(&mut self.unbound);
-        self.line.taken.extend(&way.segments);
+        self.line.taken.extend(&path.segments);
         let region = self.region(composite);
         if self.walks_segments() {
             let base = self.late.len();
-            self.walk(way, None, region, start, host)?;
-            self.bind_rest(way, None);
+            self.walk(path, None, region, start, host)?;
+            self.bind_rest(path, None);
             self.enter_late(base, host)?;
             self.unbound = outer;
             if self.kind(composite) == NodeKind::And && !self.is_ended() {
@@ -115,8 +114,8 @@ impl Stepper<'_> {
             }
             return Ok(());
         }
-        self.effects(&way.segments, region, host);
-        let targets = self.choose(&way.ends, region, host)?;
+        self.effects(&path.segments, region, host);
+        let targets = self.choose(&path.ends, region, host)?;
         self.bind_timers(targets.first().copied());
         self.unbound = outer;
         if self.terminates {
@@ -133,8 +132,8 @@ impl Stepper<'_> {
     ) -> Result<(), Failure> {
         let owner = self.parent(history);
         let Some(record) = self.records.get(&history).cloned() else {
-            return match self.open_way(history, host) {
-                Some(way) => self.go_on(&way, owner, start, host),
+            return match self.open_path(history, host) {
+                Some(path) => self.go_on(&path, owner, start, host),
                 None if start.is_some() => {
                     start.into_iter().for_each(|start| self.enter(start, host));
                     Ok(())
@@ -146,7 +145,7 @@ impl Stepper<'_> {
             (NodeKind::DeepHistory, _) => self.enter_below(owner, &record, host),
             (_, NodeKind::And) => self.enter_regions(owner, &[], host),
             _ => match record[..] {
-                [child] => self.enter_whole(child, &[], host), // START too, to rest there
+                [child] => self.enter_whole(child, &[], host), // also START, which stays active
                 _ => Ok(()),
             },
         }
@@ -182,7 +181,7 @@ impl Stepper<'_> {
         }
     }
 
-    /// A region that was vacated is active again: an arrival at a JOIN from it has to be repeated.
+    /// Marks the region of a node as occupied again: its arrival at a JOIN has to be repeated.
     fn occupy(&mut self, node: NodeId) {
         let Some(around) = self.chart.node(node).parent else { return };
         if self.vacated.remove(&around) && self.is_region(around) {
@@ -210,7 +209,7 @@ impl Stepper<'_> {
         }
     }
 
-    /// As `isInFinalState` of SCXML: a BASIC state has not ended, though it may have completed.
+    /// SCXML's `isInFinalState`: a BASIC state may have completed but is not in a final state.
     fn has_ended(&self, node: NodeId) -> bool {
         match self.kind(node) {
             NodeKind::And => {
@@ -226,7 +225,7 @@ impl Stepper<'_> {
         self.raise(&format!("done.state.{}", self.chart.node(node).name));
     }
 
-    /// A state has completed, and the ANDs around it that complete with it.
+    /// Raises the completion of a state and of the ANDs around it that complete with it.
     pub(crate) fn completed(&mut self, node: NodeId) {
         if self.semantics.eventless != CompletionTrigger::Once || node == Statechart::ROOT {
             return;
@@ -237,7 +236,7 @@ impl Stepper<'_> {
         self.complete_around(node);
     }
 
-    /// The AND around a region, if it has completed.
+    /// Raises the completion of the AND around a region if all its regions have completed.
     pub(crate) fn complete_around(&mut self, region: NodeId) {
         let around = self.parent(region);
         if self.semantics.eventless == CompletionTrigger::Once

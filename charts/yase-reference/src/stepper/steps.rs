@@ -4,8 +4,8 @@ use yase::expression::{Action, ActionKind, Trigger};
 use yase::statechart::{NodeId, NodeKind, Statechart};
 use yase::{Deferral, Delivery, EventMatching, EventPool, FailureEvents, Firing, Host, ScopeId, Timestamp};
 
-use super::lines::Heading;
-use super::select::Offer;
+use super::log_lines::Heading;
+use super::selection::Offer;
 use super::{Failure, Held, Line, Occurrence, Phase, StaticPath, Stepper};
 use crate::test_host::TestHost;
 
@@ -31,7 +31,7 @@ impl Stepper<'_> {
         }
     }
 
-    /// Under `scxml`, errors are one event, raised every time.
+    /// Whether errors are one event that is raised every time, as under `scxml`.
     pub(crate) fn raises_every_error(&self) -> bool {
         self.semantics.failures == FailureEvents::EveryTime
     }
@@ -83,8 +83,8 @@ impl Stepper<'_> {
         }
     }
 
-    /// The earliest expired timer that has not been processed; the chooser decides between equal
-    /// ones.
+    /// The earliest expired timer that has not been processed; the chooser picks among timers that
+    /// expired at the same time.
     fn next_expiry(&mut self) -> Option<(ScopeId, String)> {
         let over: Vec<(Timestamp, (ScopeId, String))> = self
             .timers
@@ -96,7 +96,7 @@ impl Stepper<'_> {
         let mut together: Vec<(ScopeId, String)> =
             over.into_iter().filter(|(moment, _)| *moment == first).map(|(_, key)| key).collect();
         together.sort_by_key(|key| self.timer_numbers.iter().position(|other| other == key));
-        let index = self.chance.pick(together.len());
+        let index = self.chooser.pick(together.len());
         Some(together.remove(index))
     }
 
@@ -119,8 +119,8 @@ impl Stepper<'_> {
         triggered || defers || anywhere && raises
     }
 
-    /// The name an event is known by: its own, or the longest of its token prefixes that the chart
-    /// names.
+    /// The name under which the chart knows an event: its own, or the longest prefix of its tokens
+    /// that the chart names.
     pub(crate) fn known_name(&self, event: &str) -> Option<String> {
         let mut name = event;
         loop {
@@ -157,7 +157,7 @@ impl Stepper<'_> {
             self.take(candidates, None, host)?;
             return Ok(true);
         }
-        self.recall();
+        self.restore_deferred();
         let next = match self.raised.is_empty() {
             false => self.raised.remove(0),
             true if self.arrived.is_empty() => return Ok(false),
@@ -166,21 +166,22 @@ impl Stepper<'_> {
         self.offer(next, host)
     }
 
-    /// R15, `once`: completions before what is new; one that finds nothing open is consumed.
+    /// R15, `once`: completions precede events; a completion without an enabled transition is
+    /// consumed.
     fn complete_something(&mut self, host: &mut TestHost) -> Result<bool, Failure> {
         while !self.completions.is_empty() {
             let node = self.completions.remove(0);
-            self.begin_micro_step(); // what one that is consumed has read is not reported
-            if let Some(way) = self.judge_ways(node, Offer::Completion, host).found {
+            self.begin_micro_step(); // reads for a consumed completion are not reported
+            if let Some(path) = self.select_from(node, Offer::Completion, host).found {
                 self.admit()?;
-                self.take(vec![way], None, host)?;
+                self.take(vec![path], None, host)?;
                 return Ok(true);
             }
         }
         Ok(false)
     }
 
-    /// Resets the record of the micro-step; each selection begins one.
+    /// Resets the record of the micro-step, which begins with each selection.
     pub(crate) fn begin_micro_step(&mut self) {
         self.line = Line::default();
         self.leaves = self.active_leaves();
@@ -190,28 +191,28 @@ impl Stepper<'_> {
         self.drawn.clear();
     }
 
-    /// An interruption whose activities have returned.
+    /// Fires a pending interruption whose activities have returned.
     fn interrupt_something(&mut self, host: &mut TestHost) -> Result<bool, Failure> {
-        let Some(index) = self.pending.iter().position(|(way, _)| !self.leaves_running(way)) else {
+        let Some(index) = self.pending.iter().position(|(path, _)| !self.leaves_running(path)) else {
             return Ok(false);
         };
         self.admit()?;
-        let (way, event) = self.pending.remove(index);
+        let (path, event) = self.pending.remove(index);
         self.begin_micro_step();
-        self.taken = vec![way.clone()];
-        self.fire(&way, host)?;
+        self.taken = vec![path.clone()];
+        self.fire(&path, host)?;
         self.taken.clear();
         let pending = std::mem::take(&mut self.pending);
-        self.pending = pending.into_iter().filter(|(way, _)| self.may_fire(way)).collect();
+        self.pending = pending.into_iter().filter(|(path, _)| self.may_fire(path)).collect();
         for held in &mut self.held {
             held.offer = true;
         }
-        self.print(&Heading { event: event.as_deref(), fired: &[way], ..Heading::default() }, host);
+        self.print(&Heading { event: event.as_deref(), fired: &[path], ..Heading::default() }, host);
         Ok(true)
     }
 
-    /// Deferred events come back before newer ones.
-    fn recall(&mut self) {
+    /// Returns deferred events to the queue before newer ones.
+    fn restore_deferred(&mut self) {
         let (kept, recalled): (Vec<Occurrence>, Vec<Occurrence>) = std::mem::take(&mut self.deferred)
             .into_iter()
             .partition(|occurrence| self.deferring(&occurrence.event).is_some());
@@ -246,15 +247,15 @@ impl Stepper<'_> {
         let event = occurrence.event.clone();
         let heading = Heading { event: Some(&event), ..Heading::default() };
         let found = if candidates.is_empty() { &waiting } else { &candidates };
-        if let Some(claimant) = self.claimant(&event, found) {
+        if let Some(overriding_deferral) = self.overriding_deferral(&event, found) {
             self.defer(occurrence);
-            self.print(&Heading { deferring: Some(claimant), ..heading }, host);
+            self.print(&Heading { deferring: Some(overriding_deferral), ..heading }, host);
             return Ok(true);
         }
         if !candidates.is_empty() {
             self.take(candidates, Some(&event), host)?;
         } else if !waiting.is_empty() {
-            self.held.push(Held { occurrence, ways: waiting.clone(), offer: false });
+            self.held.push(Held { occurrence, paths: waiting.clone(), offer: false });
             self.held.sort_by_key(|held| held.occurrence.number);
             self.print(&Heading { held: &waiting, ..heading }, host);
         } else {
@@ -272,18 +273,18 @@ impl Stepper<'_> {
         self.deferred.sort_by_key(|occurrence| occurrence.number);
     }
 
-    /// R26: the first state that defers an event though transitions were found for it, none of them
-    /// from inside that state or from itself.
-    fn claimant(&self, event: &str, found: &[StaticPath]) -> Option<NodeId> {
+    /// R26: the first state that defers an event for which transitions were found, if none of them
+    /// starts at or inside that state.
+    fn overriding_deferral(&self, event: &str, found: &[StaticPath]) -> Option<NodeId> {
         if self.semantics.deferral != Deferral::Innermost {
             return None;
         }
-        let own = |node: NodeId, way: &StaticPath| {
-            way.sources.iter().any(|&source| source == node || self.is_inside(source, node))
+        let own = |node: NodeId, path: &StaticPath| {
+            path.sources.iter().any(|&source| source == node || self.is_inside(source, node))
         };
         let all = self.in_order_from_within();
         let mut deferring = all.into_iter().filter(|&node| self.defers(node, event));
-        deferring.find(|&node| !found.iter().any(|way| own(node, way)))
+        deferring.find(|&node| !found.iter().any(|path| own(node, path)))
     }
 
     fn defers(&self, node: NodeId, event: &str) -> bool {
@@ -304,7 +305,7 @@ impl Stepper<'_> {
         out
     }
 
-    /// The innermost active state that defers an event; of several, the first of the document.
+    /// The innermost active state that defers an event; of several, the first in document order.
     fn deferring(&self, event: &str) -> Option<NodeId> {
         let mut all = self.in_order_from_within().into_iter();
         all.find(|&node| self.semantics.deferral != Deferral::Off && self.defers(node, event))
@@ -318,17 +319,17 @@ impl Stepper<'_> {
     ) -> Result<(), Failure> {
         let (winners, losers) = self.resolve(candidates);
         let (mut now, mut later) = (vec![], vec![]);
-        for way in winners {
-            if self.leaves_running(&way) {
+        for path in winners {
+            if self.leaves_running(&path) {
                 for node in self.in_order_from_within() {
-                    if self.would_leave(&way, node) {
+                    if self.would_leave(&path, node) {
                         self.cancel(node, host);
                     }
                 }
-                self.pending.push((way.clone(), event.map(str::to_owned)));
-                later.push(way);
+                self.pending.push((path.clone(), event.map(str::to_owned)));
+                later.push(path);
             } else {
-                now.push(way);
+                now.push(path);
             }
         }
         let fired = match self.semantics.firing {

@@ -35,7 +35,7 @@ impl Stepper<'_> {
             }
             ActionKind::Publish(path) => {
                 host.publish(region, topic(&path.text()).unwrap());
-                self.wrote(region, host);
+                self.data_written(region, host);
             }
             ActionKind::StartTimeout { timer, delay, .. } => self.start_timer(&timer.text(), *delay, region),
             ActionKind::Assign { target, value } => {
@@ -45,22 +45,22 @@ impl Stepper<'_> {
                     .ok_or("the value depends on a message that has not arrived")?;
                 host.assign(region, topic(name).unwrap(), &[FieldId(0)], Value::Int(value))
                     .map_err(|error| format!("the value cannot be assigned: {error}"))?;
-                self.forgive(name, region);
-                self.wrote(region, host);
+                self.clear_guard_failures(name, region);
+                self.data_written(region, host);
             }
             other => panic!("the generator makes no {other:?}"),
         }
         Ok(())
     }
 
-    /// Clears failures of guards that read changed data.
-    fn forgive(&mut self, name: &str, region: ScopeId) {
+    /// Allows guards that read changed data to report a failure again.
+    fn clear_guard_failures(&mut self, name: &str, region: ScopeId) {
         let reads = self.guards_that_read(name);
         self.erred.retain(|(id, other)| *other != region || !reads.contains(id));
     }
 
-    /// Written data is published with the step, or visible to all others at once.
-    fn wrote(&mut self, region: ScopeId, host: &mut TestHost) {
+    /// Publishes written data with the step or, by the semantics, delivers it at once.
+    fn data_written(&mut self, region: ScopeId, host: &mut TestHost) {
         self.written.insert(region);
         if self.semantics.sharing == WriteVisibility::NextStep {
             return;
@@ -84,21 +84,21 @@ impl Stepper<'_> {
 
     fn start_timer(&mut self, name: &str, delay: Duration, region: ScopeId) {
         let key = (region, name.to_owned());
-        self.withdraw(&key);
+        self.cancel_timer(&key);
         self.timers.insert(key.clone(), Deadline { moment: self.now + delay, announced: false, bound: None });
-        self.forgive(name, region);
+        self.clear_guard_failures(name, region);
         self.unbound.retain(|other| *other != key);
         self.unbound.push(key);
     }
 
-    fn withdraw(&mut self, key: &(ScopeId, String)) {
+    fn cancel_timer(&mut self, key: &(ScopeId, String)) {
         for queue in [&mut self.raised, &mut self.arrived, &mut self.deferred] {
             queue.retain(|occurrence| occurrence.expiry.as_ref() != Some(key));
         }
         self.held.retain(|held| held.occurrence.expiry.as_ref() != Some(key));
     }
 
-    /// Binds the timers just started to a state.
+    /// Binds the timers that were just started to a state.
     pub(crate) fn bind_timers(&mut self, target: Option<NodeId>) {
         let target = target.and_then(|node| match self.kind(node) {
             NodeKind::ShallowHistory | NodeKind::DeepHistory => Some(self.parent(node)),
@@ -119,9 +119,9 @@ impl Stepper<'_> {
         }
         let bound = self.timers.iter().filter(|(_, deadline)| deadline.bound == Some(node));
         for key in bound.map(|(key, _)| key.clone()).collect::<Vec<_>>() {
-            self.withdraw(&key);
+            self.cancel_timer(&key);
             self.timers.remove(&key);
-            self.forgive(&key.1, key.0);
+            self.clear_guard_failures(&key.1, key.0);
         }
     }
 
@@ -135,7 +135,7 @@ impl Stepper<'_> {
         Activation { node, region: self.activity_region(node), number }
     }
 
-    /// The blackboard of an activity: that of a composite has one of its own.
+    /// The blackboard of an activity: the activity of a composite has its own.
     pub(crate) fn activity_region(&self, node: NodeId) -> ScopeId {
         let own = self.tree.regions.iter().position(|&it| it == node).filter(|_| !self.is_region(node));
         let composite = self.kind(node) != NodeKind::Basic;

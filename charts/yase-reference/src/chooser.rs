@@ -3,30 +3,30 @@
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg64;
 
-/// How choices are resolved.
+/// Policy for choices that the rules leave open.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Freedom {
+pub enum ChoicePolicy {
     /// Always the first option.
     Declared,
-    /// A generator with that seed.
+    /// By a generator with this seed.
     Seeded(u64),
-    /// These options, then the first ones.
+    /// These options in turn, then always the first.
     Scripted(Vec<u32>),
 }
 
 /// Resolves choices and records them.
 #[derive(Clone, Debug)]
-pub(crate) struct Chance {
-    freedom: Freedom,
+pub(crate) struct ReferenceChooser {
+    policy: ChoicePolicy,
     generator: Pcg64,
     /// The chosen options and the numbers of options.
     pub log: Vec<(u32, u32)>,
 }
 
-impl Chance {
-    pub(crate) fn new(freedom: Freedom) -> Chance {
-        let seed = if let Freedom::Seeded(seed) = freedom { seed } else { 0 };
-        Chance { freedom, generator: Pcg64::seed_from_u64(seed), log: vec![] }
+impl ReferenceChooser {
+    pub(crate) fn new(policy: ChoicePolicy) -> ReferenceChooser {
+        let seed = if let ChoicePolicy::Seeded(seed) = policy { seed } else { 0 };
+        ReferenceChooser { policy, generator: Pcg64::seed_from_u64(seed), log: vec![] }
     }
 
     /// Chooses one of the options; a single option is not recorded.
@@ -35,8 +35,8 @@ impl Chance {
     }
 
     /// Whether weights matter.
-    pub(crate) fn draws(&self) -> bool {
-        !matches!(self.freedom, Freedom::Declared)
+    pub(crate) fn uses_weights(&self) -> bool {
+        !matches!(self.policy, ChoicePolicy::Declared)
     }
 
     /// Chooses one of several options, in proportion to their weights.
@@ -44,10 +44,10 @@ impl Chance {
         if weights.len() < 2 {
             return 0;
         }
-        let chosen = match &self.freedom {
-            Freedom::Declared => 0,
-            Freedom::Seeded(_) => self.generated(weights),
-            Freedom::Scripted(choices) => {
+        let chosen = match &self.policy {
+            ChoicePolicy::Declared => 0,
+            ChoicePolicy::Seeded(_) => self.generated(weights),
+            ChoicePolicy::Scripted(choices) => {
                 let next = choices.get(self.log.len()).copied().unwrap_or(0) as usize;
                 next.min(weights.len() - 1)
             }
@@ -56,8 +56,8 @@ impl Chance {
         chosen
     }
 
-    /// Equal options share the generator's numbers evenly; others in proportion to their weights,
-    /// in order.
+    /// Maps a number of the generator to an option: equal options share the range evenly, others in
+    /// proportion to their weights, in order.
     fn generated(&mut self, weights: &[f64]) -> usize {
         let draw = self.generator.next_u64();
         if weights.iter().all(|weight| *weight == 1.0) {
@@ -71,10 +71,10 @@ impl Chance {
         reached.unwrap_or(weights.len() - 1)
     }
 
-    /// The choices made by a script, which are all that the machine's chooser records.
+    /// The choices made by a script; the machine's chooser records only those.
     pub(crate) fn reported(&self) -> &[(u32, u32)] {
-        match self.freedom {
-            Freedom::Scripted(_) => &self.log,
+        match self.policy {
+            ChoicePolicy::Scripted(_) => &self.log,
             _ => &[],
         }
     }
