@@ -75,8 +75,8 @@ fn join(
         cycle = hold(&mut holder)?;
         monitor.drain()?;
     }
-    // The server finds new agents when it begins a cycle. It has begun the next one, and not the one
-    // after it, once it waits for the holder's answer.
+    // The server finds new agents when it begins a cycle. It has begun the next one, and not the
+    // one after it, once it waits for the holder's answer.
     monitor.wait_beyond(time(FIRST - 2))?;
     pause(taking_in);
     let mut player = Connection::open(server.agents())?;

@@ -10,16 +10,17 @@ use crate::chart_view::{ChartKey, seconds};
 use crate::run_view::{CHART, RunView, ViewedMessage};
 use crate::scene::SceneEvent;
 
-/// The most bytes of messages that are kept, with what each costs besides its content.
+/// The most bytes of messages and tables that are kept, with what each message costs besides its
+/// content.
 const BYTES: usize = 64 << 20;
 const OVERHEAD: usize = 64;
 
 /// The messages and the run's time between two kept moments.
 const INTERVAL: u64 = 10_000;
-const SPAN: u64 = 5_000_000_000;
+const SPAN: u64 = 10_000_000_000;
 
 /// The most moments and events that are kept.
-const MOMENTS: usize = 128;
+const MOMENTS: usize = 64;
 const EVENTS: usize = 2000;
 
 /// A kept message, by the number of its channel.
@@ -28,6 +29,21 @@ struct KeptMessage {
     channel: u32,
     time: u64,
     bytes: Box<[u8]>,
+}
+
+/// The state of the run before the message with a number.
+#[derive(Clone, Debug)]
+struct KeptMoment {
+    number: u64,
+    view: RunView,
+    tables: Box<str>,
+}
+
+impl KeptMoment {
+    fn new(number: u64, view: &RunView) -> KeptMoment {
+        let (view, tables) = view.compact();
+        KeptMoment { number, view, tables }
+    }
 }
 
 /// The common properties of messages.
@@ -48,8 +64,7 @@ pub(crate) struct RunRing {
     /// The number of the first message that is kept.
     first: u64,
     bytes: usize,
-    /// The state of the run before messages with these numbers.
-    moments: VecDeque<(u64, RunView)>,
+    moments: VecDeque<KeptMoment>,
     events: VecDeque<Value>,
     /// Counts events.
     pub(crate) event_count: u64,
@@ -59,7 +74,7 @@ impl RunRing {
     /// Begins with the present state of a run.
     pub(crate) fn begin(&mut self, view: &RunView) {
         *self = RunRing { event_count: self.event_count + 1, ..RunRing::default() };
-        self.moments.push_back((0, view.clone()));
+        self.keep_moment(view);
     }
 
     /// Whether it has begun.
@@ -74,7 +89,7 @@ impl RunRing {
 
     /// The time of the earliest moment that is kept, in nanoseconds.
     pub(crate) fn begin_time(&self) -> u64 {
-        self.moments.front().map_or(0, |(_, view)| view.now)
+        self.moments.front().map_or(0, |moment| moment.view.now)
     }
 
     /// Keeps a message.
@@ -103,14 +118,14 @@ impl RunRing {
 
     /// Keeps the present state if the last one that is kept is old, and drops what is too much.
     pub(crate) fn keep(&mut self, view: &RunView) {
-        let Some((number, last)) = self.moments.back() else { return };
+        let Some(KeptMoment { number, view: last, .. }) = self.moments.back() else { return };
         let is_old = self.end() - number >= INTERVAL || view.now.saturating_sub(last.now) >= SPAN;
         if is_old && self.end() > *number {
-            self.moments.push_back((self.end(), view.clone()));
+            self.keep_moment(view);
         }
         while (self.bytes > BYTES || self.moments.len() > MOMENTS) && self.moments.len() > 1 {
-            self.moments.pop_front();
-            let next = self.moments.front().map_or(0, |(number, _)| *number);
+            self.bytes -= self.moments.pop_front().map_or(0, |moment| moment.tables.len());
+            let next = self.moments.front().map_or(0, |moment| moment.number);
             while self.first < next
                 && let Some(dropped) = self.messages.pop_front()
             {
@@ -118,6 +133,12 @@ impl RunRing {
                 self.first += 1;
             }
         }
+    }
+
+    fn keep_moment(&mut self, view: &RunView) {
+        let moment = KeptMoment::new(self.end(), view);
+        self.bytes += moment.tables.len();
+        self.moments.push_back(moment);
     }
 
     /// Notes an event at a time in nanoseconds.
@@ -137,10 +158,11 @@ impl RunRing {
 
     /// The state of the run after the messages up to a number, at a time.
     pub(crate) fn moment(&self, number: u64, time: u64) -> Option<RunView> {
-        let place = self.moments.partition_point(|(kept, _)| *kept <= number);
-        let (begin, view) = self.moments.get(place.checked_sub(1)?)?;
-        let mut view = view.clone();
-        self.advance(&mut view, *begin, number, time).then_some(view)
+        let place = self.moments.partition_point(|moment| moment.number <= number);
+        let kept = self.moments.get(place.checked_sub(1)?)?;
+        let mut view = kept.view.clone();
+        view.restore_tables(&kept.tables);
+        self.advance(&mut view, kept.number, number, time).then_some(view)
     }
 
     /// Takes the messages from a number up to another into a view. Returns whether all are kept.
@@ -211,17 +233,23 @@ mod tests {
     fn memory_is_bounded_and_the_latest_moments_remain() {
         let (mut ring, mut view) = (RunRing::default(), RunView::default());
         ring.begin(&view);
-        let bytes = vec![7; 1 << 20];
+        let (bytes, table) = (vec![7; 1 << 20], "x".repeat(1 << 20));
         for second in 1..=200 {
             view.now = second * 1_000_000_000;
+            view.set_table_objects(json!({ "text": table }), json!(second));
             ring.push(&message(view.now, &bytes), true);
             ring.keep(&view);
         }
-        assert!(ring.bytes <= BYTES + 6 * (bytes.len() + OVERHEAD), "{}", ring.bytes);
+        // The messages up to the next moment, and its tables.
+        assert!(ring.bytes <= BYTES + 12 * (bytes.len() + OVERHEAD), "{}", ring.bytes);
+        let kept: usize = ring.messages.iter().map(|message| message.bytes.len() + OVERHEAD).sum();
+        let tables: usize = ring.moments.iter().map(|moment| moment.tables.len()).sum();
+        assert!(tables > 4 << 20 && ring.bytes == kept + tables, "{} {kept} {tables}", ring.bytes);
         assert!(ring.begin_time() >= 130_000_000_000, "{}", ring.begin_time());
         let number = ring.number_until(180_500_000_000);
         let moment = ring.moment(number, 180_500_000_000).unwrap();
         assert_eq!((number, moment.now), (180, 180_500_000_000));
+        assert_eq!(moment.compact().1.len(), table.len() + r#"[{"text":""},180]"#.len());
         assert!(ring.moment(3, 3_000_000_000).is_none());
     }
 

@@ -166,6 +166,23 @@ impl RunView {
         self.table_revision += 1;
     }
 
+    /// The state without its tables, and the tables as JSON text, which takes a small part of
+    /// their memory.
+    pub(crate) fn compact(&self) -> (RunView, Box<str>) {
+        let tables = json!([self.agents, self.topics]).to_string().into_boxed_str();
+        let mut view = RunView { agents: Value::Null, topics: Value::Null, ..self.clone() };
+        // Messages are decoded again when they are shown.
+        view.latest.values_mut().for_each(|latest| latest.value = None);
+        (view, tables)
+    }
+
+    /// Takes the tables of [`compact`](RunView::compact) back.
+    pub(crate) fn restore_tables(&mut self, tables: &str) {
+        if let Ok((agents, topics)) = serde_json::from_str(tables) {
+            (self.agents, self.topics) = (agents, topics);
+        }
+    }
+
     /// Takes the agents, and the topics as JSON.
     pub(crate) fn set_tables(&mut self, agents: &[AgentEntry], topics: Value) {
         self.set_table_objects(agents.iter().map(agent_object).collect(), topics);

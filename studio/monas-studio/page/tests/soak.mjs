@@ -3,15 +3,25 @@
 // real time without and with viewers, the memory of the program and of the pages, and the processor
 // time of the program's threads: that of the run itself must not depend on viewers.
 import { execFileSync } from 'node:child_process';
-import { readdirSync, readFileSync } from 'node:fs';
+import { mkdtempSync, readdirSync, readFileSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { launch, start } from './browser.mjs';
 
 const PROGRAM = process.env.MONAS ?? fileURLToPath(new URL('../../../../target/debug/monas', import.meta.url));
-const MATCH = fileURLToPath(new URL('../../../../config/match.xml', import.meta.url));
-const minutes = Number(process.argv[2] ?? 3);
+const CONFIGURATIONS = fileURLToPath(new URL('../../../../config/', import.meta.url));
+const length = Number(process.argv[2] ?? 3);
 const viewers = Number(process.argv[3] ?? 5);
 const INTERVAL = 15_000;
+
+/** The match of the README, with halves that do not end before the soak. */
+function longMatch() {
+  const text = readFileSync(join(CONFIGURATIONS, 'match.xml'), 'utf8');
+  const path = join(mkdtempSync(join(tmpdir(), 'monas-soak-')), 'match.xml');
+  writeFileSync(path, text.replace('half="300s"', 'half="7200s"').replaceAll('"config/', `"${CONFIGURATIONS}`));
+  return path;
+}
 
 const sleep = (milliseconds) => new Promise((resolve) => setTimeout(resolve, milliseconds));
 const megabytes = (bytes) => (bytes / 1e6).toFixed(1);
@@ -59,9 +69,9 @@ const line = (name, { count, mean, p50, p99, p999, longest }) =>
     `${name}: ${count} cycles, mean ${mean.toFixed(4)} ms, p50 ${p50.toFixed(4)} ms, p99 ${p99.toFixed(3)} ms, p99.9 ${p999.toFixed(3)} ms, longest ${longest.toFixed(2)} ms`,
   );
 
-/** A run for the time, with so many viewers. */
-async function soak(count) {
-  const run = start(PROGRAM, ['run', MATCH, '--control', 'soak', '--studio', '--seed', '1', '--for', `${minutes * 60 + 60}s`]);
+/** A run for some minutes, with so many viewers. */
+async function soak(count, minutes) {
+  const run = start(PROGRAM, ['run', longMatch(), '--control', 'soak', '--studio', '--seed', '1', '--for', `${minutes * 60 + 60}s`]);
   const url = await run.url;
   const pid = run.pid;
   const browser = count > 0 ? await launch() : null;
@@ -99,5 +109,5 @@ async function soak(count) {
   await run.stop();
 }
 
-await soak(0);
-await soak(viewers);
+await soak(0, Math.max(1, length / 4));
+await soak(viewers, length);
