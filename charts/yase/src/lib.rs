@@ -114,7 +114,9 @@ pub use compile::{ActivityEntry, CompiledChart, ScriptEntry, ScriptLocation};
 pub use diagnostic::{Diagnostic, Severity, Source, Span};
 pub use host::{ActionError, Host, Notice, Outcome};
 pub use ids::{ActionLocation, Activation, CompoundTransitionId, ScopeId};
-pub use machine::{Chooser, Machine, MachineError, MachineErrorKind, MicroStep, Status, StepSummary};
+pub use machine::{
+    Chooser, GuardValue, Machine, MachineError, MachineErrorKind, MicroStep, Status, StepSummary,
+};
 pub use machine::{snapshot, state_key};
 pub use script::{ActiveStates, ScriptContext};
 pub use semantics::{

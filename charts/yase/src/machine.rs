@@ -9,6 +9,7 @@ mod enter;
 mod errors;
 mod fifo;
 mod fire;
+mod guard_value;
 mod history;
 mod leave;
 mod livelock_limit;
@@ -42,6 +43,7 @@ use queues::QueuedEvent;
 use step::Macrostep;
 
 pub use chooser::Chooser;
+pub use guard_value::GuardValue;
 
 /// One execution of a [`CompiledChart`].
 ///

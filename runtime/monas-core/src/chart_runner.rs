@@ -40,6 +40,7 @@ use chart_host::{ChartHost, RootScope};
 pub(crate) use chart_host::{message_field, set_message_field, transition_name};
 use delivery_log::DeliveryLog;
 pub use delivery_log::ReplayGuide;
+pub use inspect::ChartAspect;
 pub use model_swap::ModelSwap;
 
 /// Minimum delay before the next call of an activity that returned `Ongoing`, except after

@@ -16,7 +16,7 @@ use crate::list::ActivityList;
 use crate::list::CycleOutcome;
 use crate::list::CycleTimer;
 use monas_core::agent::FailurePolicy;
-use monas_core::chart_runner::{AgentDefaults, ChartRunner};
+use monas_core::chart_runner::{AgentDefaults, ChartAspect, ChartRunner};
 use monas_core::coverage::ChartCoverage;
 use monas_core::frequency::Frequency;
 use monas_core::publishing_activity::{self, PublishingActivity};
@@ -309,8 +309,8 @@ impl AgentInstance {
     }
 
     /// The state of one of its charts, see [`ChartRunner::inspect`].
-    pub(crate) fn inspect_chart(&self, place: usize) -> Option<Vec<String>> {
-        self.charts.get(place).map(|chart| chart.runner.inspect())
+    pub(crate) fn inspect_chart(&self, place: usize, aspect: ChartAspect) -> Option<Vec<String>> {
+        self.charts.get(place).map(|chart| chart.runner.inspect(aspect))
     }
 
     /// The status of its charts.

@@ -13,7 +13,7 @@ use super::observed_thread::{LastingCall, ObservedThreads};
 use super::supervisor_request::SupervisorRequest;
 use super::sync::Mailbox;
 use super::watchdog::{Watchdog, WatchedCall};
-use monas_core::chart_runner::FinishedCall;
+use monas_core::chart_runner::{ChartAspect, FinishedCall};
 use monas_core::scheduling::Scheduling;
 use monas_core::statistics::AgentStatistics;
 
@@ -341,10 +341,15 @@ impl AgentShared {
 
     /// The state of the chart at an index, see
     /// [`ChartRunner::inspect`](monas_core::chart_runner::ChartRunner::inspect).
-    pub(crate) fn inspect_chart(&self, place: usize, patience: Duration) -> Result<Vec<String>, String> {
+    pub(crate) fn inspect_chart(
+        &self,
+        place: usize,
+        aspect: ChartAspect,
+        patience: Duration,
+    ) -> Result<Vec<String>, String> {
         let part = locked(&self.parts).charts.get(place).cloned();
         let part = part.ok_or_else(|| format!("`{}` has no such statechart", self.name))?;
-        let (_, answered) = part.enqueue(AgentUpdate { look: true, ..AgentUpdate::default() });
+        let (_, answered) = part.enqueue(AgentUpdate { inspection: Some(aspect), ..AgentUpdate::default() });
         let answer =
             answered.recv_timeout(patience).map_err(|_| format!("`{}` does not answer", self.name))?;
         answer.map_err(|reasons| reasons.join("; "))

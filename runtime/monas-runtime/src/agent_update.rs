@@ -8,7 +8,7 @@ use crate::list::ActivityList;
 use crate::list::ListEdit;
 use monas_core::activity::Activity;
 use monas_core::agent::{ChartSettings, FailurePolicy};
-use monas_core::chart_runner::{AgentDefaults, ChartRunner, ModelSwap};
+use monas_core::chart_runner::{AgentDefaults, ChartAspect, ChartRunner, ModelSwap};
 use monas_core::frequency::Frequency;
 
 /// The effects of one change on an agent. Its list and its charts each apply their share between
@@ -16,7 +16,7 @@ use monas_core::frequency::Frequency;
 #[derive(Default)]
 pub(crate) struct AgentUpdate {
     /// Requests the state of a chart, see [`ChartRunner::inspect`]; changes nothing.
-    pub(crate) look: bool,
+    pub(crate) inspection: Option<ChartAspect>,
     pub(crate) commands: Vec<AgentCommand>,
     pub(crate) edits: Vec<ListEdit>,
     /// A list for an agent without one.

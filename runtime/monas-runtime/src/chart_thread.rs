@@ -322,8 +322,8 @@ impl ChartThread {
     }
 
     fn apply(&mut self, update: AgentUpdate) -> Result<Vec<String>, Vec<String>> {
-        if update.look {
-            return Ok(self.runner.inspect());
+        if let Some(aspect) = update.inspection {
+            return Ok(self.runner.inspect(aspect));
         }
         let mut notes = Vec::new();
         let now = self.driver.read_clock();

@@ -26,7 +26,7 @@ use super::supervisor_request::{SupervisorRequest, request_notifier};
 use super::sync::Mailbox;
 use crate::list::ActivityList;
 use monas_core::agent::AgentProfile;
-use monas_core::chart_runner::{AgentDefaults, ChartRunner, FinishedCall};
+use monas_core::chart_runner::{AgentDefaults, ChartAspect, ChartRunner, FinishedCall};
 use monas_core::error::{Error, ErrorKind};
 use monas_core::frequency::Frequency;
 use monas_core::records::{AgentEntry, CHANGE, Change, Changed, ChartChoice};
@@ -487,9 +487,9 @@ impl AgentControl for AgentThreads {
         shown.and_then(|charts| charts.get(place).map(|chart| chart.status)).unwrap_or(AgentStatus::Stopped)
     }
 
-    fn inspect_chart(&self, agent: &str, place: usize) -> Result<Vec<String>, String> {
+    fn inspect_chart(&self, agent: &str, place: usize, aspect: ChartAspect) -> Result<Vec<String>, String> {
         let worker = self.agent_handle(agent).ok_or_else(|| format!("`{agent}` is not there"))?;
-        worker.shared.inspect_chart(place, PATIENCE)
+        worker.shared.inspect_chart(place, aspect, PATIENCE)
     }
 
     fn cycles(&self, agent: &str) -> u64 {

@@ -46,6 +46,7 @@ mod base64;
 mod cameras;
 mod chart_history;
 #[cfg_attr(not(unix), allow(dead_code, reason = "only runs of Unix are followed"))]
+mod chart_values;
 mod chart_view;
 #[cfg_attr(not(unix), allow(dead_code, reason = "only runs of Unix are changed"))]
 mod control_request;

@@ -13,6 +13,7 @@ use monas_link::control::{ControlClient, WatchStream};
 use prost::Message;
 use serde_json::{Value, json};
 
+use crate::chart_values;
 use crate::chart_view::{ChartKey, seconds};
 use crate::error::{Error, ErrorKind};
 use crate::live_session::LiveSession;
@@ -32,6 +33,9 @@ const BATCH: usize = 2048;
 
 /// The interval between two looks at agents and topics.
 const TABLES: Duration = Duration::from_secs(1);
+
+/// The interval between two looks at the values of charts that viewers see.
+const VALUES: Duration = Duration::from_millis(100);
 
 /// The interval between two attempts to connect.
 const RETRY: Duration = Duration::from_millis(500);
@@ -117,7 +121,7 @@ impl LiveState {
         let mut requests = RunRequests { client, sequences: BTreeMap::new(), last: 0 };
         let mut events = EventLog::default();
         let mut lost = 0;
-        let mut due = now();
+        let (mut due, mut values_due) = (now(), now());
         while ended.try_recv() == Err(TryRecvError::Empty) {
             let seen = next_batch(&mut watch)?;
             self.learn_schemas(&seen, &mut requests.client)?;
@@ -125,6 +129,10 @@ impl LiveState {
             if now() >= due {
                 self.look_after(&mut requests, &mut events)?;
                 due = now() + TABLES;
+            }
+            if now() >= values_due {
+                self.look_at_values(&mut requests)?;
+                values_due = now() + VALUES;
             }
         }
         Ok(())
@@ -136,10 +144,15 @@ impl LiveState {
 
     fn learn_schemas(&self, seen: &[Seen], client: &mut ControlClient) -> Result<(), monas_link::Error> {
         for seen in seen.iter().filter(|seen| self.is_of_scene(&seen.path)) {
-            if !self.view().decoder.knows(&seen.path) {
-                let schema = client.schema(&seen.path)?;
-                self.view().decoder.learn(&seen.path, &schema.r#type, &schema.descriptors);
-            }
+            self.learn_schema(&seen.path, client)?;
+        }
+        Ok(())
+    }
+
+    fn learn_schema(&self, topic: &str, client: &mut ControlClient) -> Result<(), monas_link::Error> {
+        if !self.view().decoder.knows(topic) {
+            let schema = client.schema(topic)?;
+            self.view().decoder.learn(topic, &schema.r#type, &schema.descriptors);
         }
         Ok(())
     }
@@ -175,6 +188,20 @@ impl LiveState {
         all_lost
     }
 
+    /// Asks for the values of the charts that viewers see.
+    fn look_at_values(&self, requests: &mut RunRequests) -> Result<(), monas_link::Error> {
+        for chart in self.watched_charts.all() {
+            // An agent that has just ended has no values.
+            let Ok(state) = requests.chart(&chart.key, true) else { continue };
+            let Ok(values) = serde_json::from_str::<Value>(&state.values) else { continue };
+            for topic in chart_values::topics(&values) {
+                self.learn_schema(topic, &mut requests.client)?;
+            }
+            chart.set(chart_values::shown(&chart.key, &values, &self.view().decoder));
+        }
+        Ok(())
+    }
+
     /// Asks for the tables, and for charts that are not known.
     fn look_after(&self, requests: &mut RunRequests, events: &mut EventLog) -> Result<(), monas_link::Error> {
         let run = requests.client.describe()?;
@@ -208,7 +235,7 @@ impl LiveState {
         }
         for key in missing {
             // An agent that has just ended has no chart; the next look finds what is there.
-            if let Ok(state) = requests.chart(&key) {
+            if let Ok(state) = requests.chart(&key, false) {
                 self.view().load_chart(key, &state);
             }
         }
@@ -289,8 +316,13 @@ impl RunRequests {
         Ok(reply.agents.map(|agents| agents.agents).unwrap_or_default())
     }
 
-    fn chart(&mut self, key: &ChartKey) -> Result<monas::records::ChartState, monas_link::Error> {
-        let choice = ChartChoice { agent: key.agent.clone(), chart: (key.chart + 1).to_string() };
+    /// The state of a chart, or its values alone.
+    fn chart(
+        &mut self,
+        key: &ChartKey,
+        values: bool,
+    ) -> Result<monas::records::ChartState, monas_link::Error> {
+        let choice = ChartChoice { agent: key.agent.clone(), chart: (key.chart + 1).to_string(), values };
         let host = key.host.clone();
         let reply = self.reply(&Inquiry { host, chart: Some(choice), ..Inquiry::default() })?;
         Ok(reply.chart.unwrap_or_default())

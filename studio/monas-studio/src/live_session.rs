@@ -8,6 +8,7 @@ use monas_link::control::{ControlClient, WatchStream};
 use serde_json::{Value, json};
 
 use crate::cameras::{self, ChosenCamera};
+use crate::chart_values::ChartValues;
 use crate::chart_view::seconds;
 use crate::control_request::ControlRequest;
 use crate::live_state::LiveState;
@@ -35,6 +36,8 @@ pub(crate) struct LiveSession {
     watched: Option<WatchedTopic>,
     /// The robot whose images are seen, and their topic.
     camera: Option<(ChosenCamera, WatchedTopic)>,
+    /// The chart whose values are seen, and the revision that the viewer has.
+    values: Option<(Arc<ChartValues>, u64)>,
     /// The moment that is looked at, if it is not the present one.
     past: Option<PastMoment>,
     /// Whether the viewer has to forget what it has, since the moment is not a later one.
@@ -89,6 +92,12 @@ impl Session for LiveSession {
                 self.camera = host.and_then(|host| self.watch_camera(host));
                 None
             }
+            ViewerRequest::Values(key) => {
+                let chart =
+                    key.and_then(|key| self.state.view().charts.keys().find(|it| it.text() == key).cloned());
+                self.values = chart.map(|key| (self.state.watched_charts.watch(key), 0));
+                None
+            }
             ViewerRequest::Pace(factor) => {
                 if let Some(past) = &mut self.past {
                     past.factor = factor.min(FASTEST);
@@ -121,7 +130,7 @@ impl Session for LiveSession {
 
     fn frame(&mut self, elapsed: Duration) -> Option<Value> {
         self.play(elapsed);
-        let (sample, images) = (self.sample(), self.images(elapsed));
+        let (sample, images, values) = (self.sample(), self.images(elapsed), self.chart_values());
         let pace = self.state.pace.as_ref().map(Pace::factor);
         let is_elsewhere = std::mem::take(&mut self.is_elsewhere);
         if is_elsewhere {
@@ -140,7 +149,8 @@ impl Session for LiveSession {
         };
         let is_new = frame.as_ref().is_some_and(|frame| frame.get("run").is_some());
         let facts = self.facts(is_new);
-        let has_news = frame.is_some() || sample.is_some() || images.is_some() || facts.is_some();
+        let has_news =
+            frame.is_some() || sample.is_some() || images.is_some() || values.is_some() || facts.is_some();
         if !has_news && pace == self.pace {
             return None;
         }
@@ -153,6 +163,9 @@ impl Session for LiveSession {
         }
         if let Some(images) = images {
             frame["camera"] = images;
+        }
+        if let Some(values) = values {
+            frame["values"] = values;
         }
         if let Some(facts) = facts {
             frame["tape"] = facts;
@@ -178,6 +191,7 @@ impl LiveSession {
             pace: None,
             watched: None,
             camera: None,
+            values: None,
             past: None,
             is_elsewhere: false,
             ring: None,
@@ -211,6 +225,17 @@ impl LiveSession {
             json!({"begin": seconds(ring.begin_time()), "end": seconds(now), "factor": factor.unwrap_or(1.0),
             "events": ring.events(), "live": factor.is_none()}),
         )
+    }
+
+    /// The values of the chosen chart, if the viewer does not have them. They are those of the
+    /// present moment only.
+    fn chart_values(&mut self) -> Option<Value> {
+        let (chart, revision) = self.values.as_mut().filter(|_| self.past.is_none())?;
+        let latest = chart.latest();
+        (latest.revision != *revision).then(|| {
+            *revision = latest.revision;
+            Value::clone(&latest.values)
+        })
     }
 
     /// Goes to a moment of the run, or to the present one.

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
+use crate::chart_values::WatchedCharts;
 use crate::pace::Pace;
 use crate::run_ring::RunRing;
 use crate::run_view::RunView;
@@ -15,6 +16,7 @@ pub(crate) struct LiveState {
     pub(crate) pace: Option<Pace>,
     /// Whether viewers may change the run.
     pub(crate) allows_control: bool,
+    pub(crate) watched_charts: WatchedCharts,
     view: Mutex<RunView>,
     /// What the run was before. It is locked after the view.
     ring: Mutex<RunRing>,
@@ -28,7 +30,8 @@ impl LiveState {
         allows_control: bool,
     ) -> LiveState {
         let (view, ring) = (Mutex::default(), Mutex::default());
-        LiveState { socket, scene, pace, allows_control, view, ring }
+        let watched_charts = WatchedCharts::default();
+        LiveState { socket, scene, pace, allows_control, watched_charts, view, ring }
     }
 
     pub(crate) fn view(&self) -> MutexGuard<'_, RunView> {

@@ -189,7 +189,8 @@ impl Session for TapeSession {
                 self.camera = host.map(ChosenCamera::new);
                 self.sent_images = None;
             }
-            ViewerRequest::Live | ViewerRequest::Model(..) => {}
+            // The guards at a moment of a tape are explained by `WhyTransition`.
+            ViewerRequest::Live | ViewerRequest::Model(..) | ViewerRequest::Values(_) => {}
             ViewerRequest::Control(id, _) => {
                 let reason = "a tape cannot be changed";
                 return Some(json!({"type": "reply", "id": id, "done": false, "reason": reason}));

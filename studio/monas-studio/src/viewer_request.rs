@@ -17,6 +17,8 @@ pub(crate) enum ViewerRequest {
     Unwatch,
     /// Images of the cameras of a host from now on; of none without one.
     Camera(Option<String>),
+    /// The values of a chart from now on, by its key; of none without one.
+    Values(Option<String>),
     /// Another speed of simulated time, or of what is played.
     Pace(f64),
     /// The present moment of a run.
@@ -51,6 +53,7 @@ impl ViewerRequest {
             "watch" => Some(ViewerRequest::Watch { host: word("host")?, topic: word("topic")? }),
             "live" => Some(ViewerRequest::Live),
             "camera" => Some(ViewerRequest::Camera(word("host"))),
+            "values" => Some(ViewerRequest::Values(word("key"))),
             "unwatch" => Some(ViewerRequest::Unwatch),
             // JSON has no infinity
             "pace" if value["factor"].is_null() => Some(ViewerRequest::Pace(f64::INFINITY)),

@@ -10,6 +10,7 @@ mod completion;
 mod connectors;
 mod data;
 mod firing;
+mod guard_values;
 mod histories;
 mod history;
 mod joins;

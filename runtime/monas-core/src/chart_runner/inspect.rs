@@ -1,6 +1,9 @@
 //! The state of a running chart, for status queries and statistics.
 
-use narukom::{Hub, Timestamp, TopicSlot};
+use std::fmt::Write;
+
+use narukom::{AnySample, Hub, Timestamp, TopicDeclaration, TopicSlot};
+use serde_json::{Value, json};
 use yase::{Element, Machine, NodeId, NodeKind, Status};
 use yase_export::{Highlights, Mark, to_picture, to_svg_marked};
 
@@ -8,10 +11,49 @@ use super::ChartRunner;
 use crate::coverage::ChartCoverage;
 use crate::statistics::ActivityStatistics;
 
-impl ChartRunner {
+/// The part of a chart's state that is inspected.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum ChartAspect {
     /// A snapshot of its machine in JSON, the chart as SVG with the active states highlighted, and
     /// its shapes for viewers.
-    pub fn inspect(&self) -> Vec<String> {
+    State,
+    /// What its guards read and whether they hold, its timers and its blackboards, as one JSON
+    /// object: see `ChartState.values` of the records.
+    Values,
+}
+
+impl ChartRunner {
+    /// The documents of an aspect.
+    pub fn inspect(&self, aspect: ChartAspect) -> Vec<String> {
+        match aspect {
+            ChartAspect::State => self.inspect_state(),
+            ChartAspect::Values => vec![self.values().to_string()],
+        }
+    }
+
+    fn values(&self) -> Value {
+        let chart = self.machine.chart();
+        let guards = self.machine.guard_values(&self.host).into_iter().map(
+            |guard| json!({"transition": guard.transition.0, "scope": guard.scope.0, "holds": guard.holds}),
+        );
+        let timers = chart.timers().map(|(scope, name)| {
+            let deadline = self.machine.deadline(scope, name).map(|deadline| deadline.as_nanos());
+            json!({"scope": scope.0, "name": name, "deadline": deadline})
+        });
+        let scopes = chart.regions().map(|scope| {
+            let name = chart.region_node(scope).map(|node| chart.short_path(node)).unwrap_or_default();
+            let messages = self.host.blackboards.visible(scope).into_iter();
+            let messages = messages.map(|sample| message(self.hub(), sample));
+            json!({"scope": scope.0, "name": name, "is_lent": self.host.blackboards.is_lent(scope),
+                "messages": messages.collect::<Vec<_>>()})
+        });
+        json!({"time": self.host.now.as_nanos(), "guards": guards.collect::<Vec<_>>(),
+            "timers": timers.collect::<Vec<_>>(), "scopes": scopes.collect::<Vec<_>>()})
+    }
+
+    /// A snapshot of its machine in JSON, the chart as SVG with the active states highlighted, and
+    /// its shapes for viewers.
+    fn inspect_state(&self) -> Vec<String> {
         let chart = self.machine.chart().statechart();
         let mut marks = Highlights::default();
         let active = self.machine.configuration();
@@ -126,4 +168,20 @@ impl ChartRunner {
     pub fn max_activities(&self) -> usize {
         self.machine.chart().max_activities()
     }
+}
+
+/// A message of a blackboard; its content is the protobuf encoding in hexadecimal.
+fn message(hub: &Hub, sample: &AnySample) -> Value {
+    let AnySample { message, header } = sample;
+    let mut bytes = Vec::new();
+    message.encode_to(&mut bytes);
+    let hexadecimal = bytes.iter().fold(String::with_capacity(2 * bytes.len()), |mut text, byte| {
+        // Writing to a string does not fail.
+        let _ = write!(text, "{byte:02x}");
+        text
+    });
+    let topic = hub.declaration(header.topic).map(TopicDeclaration::path);
+    json!({"topic": topic, "host": hub.host_name(header.host).as_deref(),
+        "publisher": hub.publisher_name(header.publisher).as_deref(), "sequence": header.sequence,
+        "published": header.local.as_nanos(), "bytes": hexadecimal})
 }

@@ -266,6 +266,25 @@ impl RegionBlackboards {
         }
     }
 
+    /// The messages that a region's blackboard shows, for inspection: of all topics that it has
+    /// subscribed to, or as of the loan of those that guards read; then those of named sources.
+    pub(crate) fn visible(&self, region: ScopeId) -> Vec<&AnySample> {
+        let Some(region) = self.regions.get(region.0 as usize) else { return Vec::new() };
+        let mut samples: Vec<&AnySample> = match &region.resident {
+            Some(blackboard) => {
+                blackboard.topics_read().into_iter().filter_map(|topic| blackboard.shown(topic)).collect()
+            }
+            None => region.shown.iter().flatten().collect(),
+        };
+        samples.extend(region.subscriptions.newest_of_all());
+        samples
+    }
+
+    /// Whether the blackboard of a region is on loan to an activity.
+    pub(crate) fn is_lent(&self, region: ScopeId) -> bool {
+        self.regions.get(region.0 as usize).is_some_and(|region| region.resident.is_none())
+    }
+
     /// Lends the blackboard of its region to an activity.
     pub(crate) fn lend_blackboard(
         &mut self,

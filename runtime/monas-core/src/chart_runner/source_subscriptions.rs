@@ -49,6 +49,11 @@ impl SourceSubscriptions {
         Ok(SourceSubscriptions { subscriptions: feeds.map_err(Error::hub)? })
     }
 
+    /// The newest message of each source that has one.
+    pub(crate) fn newest_of_all(&self) -> impl Iterator<Item = &AnySample> {
+        self.subscriptions.iter().filter_map(|source| source.newest.as_ref())
+    }
+
     /// Takes what was published since the last delivery.
     pub(crate) fn deliver(&mut self, hub: &Hub, fetching: &mut DeliveryLog) {
         for feed in &mut self.subscriptions {

@@ -3,6 +3,7 @@
 use crate::agent_factory::PreparedAgent;
 use crate::agent_update::{AgentStatus, AgentUpdate, ChangeRef};
 use monas_core::agent::AgentProfile;
+use monas_core::chart_runner::ChartAspect;
 use monas_core::records::AgentEntry;
 
 /// Running agents that accept updates.
@@ -14,7 +15,7 @@ pub(crate) trait AgentControl {
     fn chart_status(&self, agent: &str, place: usize) -> AgentStatus;
 
     /// The state of a chart of an agent: the documents of `ChartRunner::inspect`.
-    fn inspect_chart(&self, agent: &str, place: usize) -> Result<Vec<String>, String>;
+    fn inspect_chart(&self, agent: &str, place: usize, aspect: ChartAspect) -> Result<Vec<String>, String>;
 
     /// Whether it has a list, which may be empty.
     fn has_list(&self, agent: &str) -> bool;

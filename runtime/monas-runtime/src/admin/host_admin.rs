@@ -15,6 +15,7 @@ use crate::agent_factory::{AgentFactory, HostContext};
 use crate::agent_update::{AgentUpdate, ChangeRef};
 use crate::host_status::OUTSIDE;
 use monas_core::agent::AgentProfile;
+use monas_core::chart_runner::ChartAspect;
 use monas_core::error::Error;
 use monas_core::records::{
     AgentEntry, CHANGE, CHANGED, Change, Changed, ChartChoice, ChartState, Configuration, Finding,
@@ -301,7 +302,7 @@ impl HostAdmin {
     /// # Errors
     /// There is no such agent or chart, or it does not reply.
     pub(crate) fn chart(&self, choice: &ChartChoice, staff: &dyn AgentControl) -> Result<ChartState, String> {
-        let ChartChoice { agent, chart } = choice;
+        let ChartChoice { agent, chart, values } = choice;
         let profile = self.profiles.iter().find(|profile| profile.name == *agent);
         let profile = profile.ok_or_else(|| format!("no agent is named `{agent}`"))?;
         let said = |refusal: ChangeRefusal| {
@@ -312,16 +313,23 @@ impl HostAdmin {
             reasons.collect::<Vec<_>>().join("; ")
         };
         let place = settings::chart(profile, chart).map_err(said)?;
-        let mut documents = staff.inspect_chart(agent, place)?.into_iter();
-        Ok(ChartState {
+        let aspect = if *values { ChartAspect::Values } else { ChartAspect::State };
+        let mut documents = staff.inspect_chart(agent, place, aspect)?.into_iter();
+        let mut document = || documents.next().unwrap_or_default();
+        let mut state = ChartState {
             host: self.hub().host().into(),
             agent: agent.clone(),
             model: profile.charts[place].model.clone(),
             state: staff.chart_status(agent, place).word().into(),
-            snapshot: documents.next().unwrap_or_default(),
-            drawing: documents.next().unwrap_or_default(),
-            picture: documents.next().unwrap_or_default(),
-        })
+            ..ChartState::default()
+        };
+        match aspect {
+            ChartAspect::Values => state.values = document(),
+            ChartAspect::State => {
+                (state.snapshot, state.drawing, state.picture) = (document(), document(), document());
+            }
+        }
+        Ok(state)
     }
 
     /// The present configuration, as it is saved.

@@ -11,6 +11,7 @@ use super::super::agent_update::{AgentStatus, AgentUpdate, ChangeRef as ByWhom};
 use super::replayed_agents::refuse_in_real_time;
 use super::replayed_thread::ReplayedThread;
 use monas_core::agent::AgentProfile;
+use monas_core::chart_runner::ChartAspect;
 use monas_core::error::{Error, ErrorKind};
 use monas_core::records::{Action, AgentEntry, Asked, Change, Changed, Cycle};
 
@@ -313,7 +314,7 @@ impl AgentControl for ChangeReplayer<'_> {
         if self.action == Action::StartAgent { AgentStatus::Stopped } else { AgentStatus::Running }
     }
 
-    fn inspect_chart(&self, agent: &str, _: usize) -> Result<Vec<String>, String> {
+    fn inspect_chart(&self, agent: &str, _: usize, _: ChartAspect) -> Result<Vec<String>, String> {
         Err(format!("`{agent}` is replayed"))
     }
 

@@ -18,6 +18,7 @@ use super::super::agent_instance::AgentInstance;
 use super::super::agent_update::{AgentStatus, AgentUpdate, ChangeRef};
 use super::replay_host::ReplayedAgent;
 use monas_core::agent::AgentProfile;
+use monas_core::chart_runner::ChartAspect;
 use monas_core::error::{Error, ErrorKind};
 use monas_core::records::{Action, AgentEntry, Change, Changed};
 use monas_core::registry::Registry;
@@ -50,8 +51,8 @@ impl AgentControl for ReplayedAgents<'_> {
         shown.get(place).map_or(AgentStatus::Stopped, |chart| chart.status)
     }
 
-    fn inspect_chart(&self, agent: &str, place: usize) -> Result<Vec<String>, String> {
-        let on_difference = self.instance(agent).and_then(|instance| instance.inspect_chart(place));
+    fn inspect_chart(&self, agent: &str, place: usize, aspect: ChartAspect) -> Result<Vec<String>, String> {
+        let on_difference = self.instance(agent).and_then(|instance| instance.inspect_chart(place, aspect));
         on_difference.ok_or_else(|| format!("`{agent}` has no such statechart"))
     }
 

@@ -18,6 +18,7 @@ use crate::links::RunningLink;
 use crate::list::CycleOutcome;
 use crate::setup::{PreparedHost, tick};
 use monas_core::agent::AgentProfile;
+use monas_core::chart_runner::ChartAspect;
 use monas_core::error::{Error, ErrorKind};
 use monas_core::records::{AgentEntry, CHANGE, Change, Changed, ChartChoice};
 use monas_core::statistics::AgentStatistics;
@@ -235,8 +236,8 @@ impl AgentControl for SimulatedAgents<'_> {
         shown.get(place).map_or(AgentStatus::Stopped, |chart| chart.status)
     }
 
-    fn inspect_chart(&self, agent: &str, place: usize) -> Result<Vec<String>, String> {
-        let inspection = self.team.instance(agent).and_then(|instance| instance.inspect_chart(place));
+    fn inspect_chart(&self, agent: &str, place: usize, aspect: ChartAspect) -> Result<Vec<String>, String> {
+        let inspection = self.team.instance(agent).and_then(|instance| instance.inspect_chart(place, aspect));
         inspection.ok_or_else(|| format!("`{agent}` has no such statechart"))
     }
 

@@ -79,6 +79,25 @@ const TESTS = {
     await shot(page, 'chart');
   },
 
+  async 'guards, timers and blackboards are seen as they change'({ page }) {
+    await page.getByRole('button', { name: 'Values' }).click();
+    await until(page, 'guards that hold, and others', () => {
+      const signs = [...document.querySelectorAll('[aria-label=Guards] .sign')].map((sign) => sign.textContent);
+      return signs.includes('✓') && signs.includes('✗');
+    });
+    await until(page, 'a timer that runs', () => /decision_timeout in /.test(document.querySelector('[aria-label=Timers]')?.textContent ?? ''));
+    const ball = page.locator('[aria-label=Blackboards] details', { hasText: 'soccer/ball' }).first();
+    await ball.evaluate((details) => (details.open = true));
+    await until(page, 'the ball of a region', () => /soccer\/ball\s+0:\d\d\.\d\s+.*distance \d/.test(document.querySelector('[aria-label=Blackboards]')?.textContent ?? ''));
+    const timers = await textOf(page, '[aria-label=Timers]');
+    await until(page, 'that timers go on', (before) => document.querySelector('[aria-label=Timers]')?.textContent !== before, timers);
+    await shot(page, 'values');
+    await page.locator('[aria-label=Guards] li', { hasText: '[robot_timeout]' }).getByRole('button').click();
+    await until(page, 'whether its guard holds', () => /its guard (holds|does not hold) at 0:\d\d/.test(document.querySelector('.why')?.textContent ?? ''));
+    await page.locator('.why button').click();
+    await page.getByRole('button', { name: 'Latest decisions' }).click();
+  },
+
   async 'the drawing is saved as SVG'({ page }) {
     const [download] = await Promise.all([page.waitForEvent('download'), page.locator('.chart button', { hasText: 'SVG' }).click()]);
     assert.match(download.suggestedFilename(), /^blue-3-Attacker\.svg$/);
@@ -187,6 +206,8 @@ const TESTS = {
     await until(page, 'a rate', () => Number(document.querySelector('tr.choice td.number')?.textContent) > 0);
     await page.locator('tr.choice', { hasText: 'blue-2' }).click();
     assert.match(await textOf(page, '.inner'), /WalkTowardsBall/);
+    await until(page, 'plots of lengths, cycles and overruns', () => document.querySelectorAll('.plots .uplot').length === 3);
+    assert.match(await textOf(page, '.plots'), /mean.*deviation.*p50.*p99.*Cycles per second.*Overruns per second/s);
     await shot(page, 'agents');
   },
 

@@ -17,7 +17,7 @@ pub(crate) fn execute(
     run: &RunSelector,
     console: &mut CommandOutput<'_>,
 ) -> Result<Exit, CommandFailure> {
-    let choice = ChartChoice { agent: agent.into(), chart: chart.unwrap_or_default().into() };
+    let choice = ChartChoice { agent: agent.into(), chart: chart.unwrap_or_default().into(), values: false };
     let state = request(Inquiry { chart: Some(choice), ..Inquiry::default() }, run)?.chart;
     let state = state.ok_or_else(|| unexpected_reply(run))?;
     if let Some(file) = output {

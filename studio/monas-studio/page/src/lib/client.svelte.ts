@@ -5,6 +5,7 @@ import type {
   CameraNews,
   ChartNews,
   ChartStep,
+  ChartValues,
   Explanation,
   Frame,
   Ground,
@@ -47,10 +48,14 @@ export interface KnownPicture {
   region: number;
 }
 
-/** The figures of an agent over the last minute, one a second. */
+/** The figures of an agent over the last minute, one a second; lengths of cycles in seconds. */
 export interface AgentHistory {
+  times: number[];
   rates: number[];
   means: number[];
+  deviations: number[];
+  p50: number[];
+  p99: number[];
   overruns: number[];
 }
 
@@ -74,6 +79,10 @@ export class StudioClient {
   sample = $state.raw<Sample | null>(null);
   /** What the cameras of the chosen robot see. */
   camera = $state.raw<CameraNews | null>(null);
+  /** Whether a robot has delivered images. */
+  hasImages = $state(false);
+  /** The values of the chosen chart, at the present moment of a run. */
+  values = $state.raw<ChartValues | null>(null);
   /** The speed of simulated time, null if it is unlimited; undefined if it is not set here. */
   pace = $state.raw<number | null | undefined>(undefined);
   tape = $state.raw<TapeFacts | null>(null);
@@ -94,6 +103,7 @@ export class StudioClient {
   #retry = FIRST_RETRY;
   #watched: { host: string; topic: string } | null = null;
   #cameraHost: string | null = null;
+  #valuesKey: string | null = null;
   /** The drawings that were asked for, by chart. */
   #asked = new Map<string, number>();
   #tableTime = 0;
@@ -114,6 +124,9 @@ export class StudioClient {
       }
       if (this.#cameraHost) {
         this.#send({ type: 'camera', host: this.#cameraHost });
+      }
+      if (this.#valuesKey) {
+        this.#send({ type: 'values', key: this.#valuesKey });
       }
     };
     socket.onmessage = (event) => this.#take(JSON.parse(String(event.data)) as ServerMessage);
@@ -141,6 +154,13 @@ export class StudioClient {
     this.#watched = null;
     this.sample = null;
     this.#send({ type: 'unwatch' });
+  }
+
+  /** Gets the values of a chart from now on, or of none. */
+  watchValues(key: string | null): void {
+    this.#valuesKey = key;
+    this.values = null;
+    this.#send({ type: 'values', key });
   }
 
   /** Gets the images of a robot from now on; of none without one. */
@@ -326,8 +346,12 @@ export class StudioClient {
     if (frame.sample) {
       this.sample = frame.sample;
     }
+    if (frame.values?.key === this.#valuesKey) {
+      this.values = frame.values ?? null;
+    }
     if (frame.camera) {
       this.camera = frame.camera;
+      this.hasImages ||= frame.camera.images.length > 0;
     }
     if (frame.beside) {
       if (!this.beside) {
@@ -379,12 +403,21 @@ export class StudioClient {
       for (const row of rows) {
         const key = agentKey(row);
         const last = before.get(key);
-        const known = this.histories.get(key) ?? { rates: [], means: [], overruns: [] };
+        const known = this.histories.get(key) ?? { times: [], rates: [], means: [], deviations: [], p50: [], p99: [], overruns: [] };
+        if (!last) {
+          histories.set(key, known);
+          continue;
+        }
         const add = (list: number[], value: number) => [...list, value].slice(-HISTORY);
+        const length = (list: number[], value: number | undefined) => (value === undefined ? list : add(list, value));
         histories.set(key, {
-          rates: last ? add(known.rates, Math.max(0, row.cycles - last.cycles) / span) : known.rates,
-          means: row.time ? add(known.means, row.time.mean) : known.means,
-          overruns: last ? add(known.overruns, Math.max(0, row.overruns - last.overruns)) : known.overruns,
+          times: add(known.times, now),
+          rates: add(known.rates, Math.max(0, row.cycles - last.cycles) / span),
+          means: length(known.means, row.time?.mean),
+          deviations: length(known.deviations, row.time?.deviation),
+          p50: length(known.p50, row.time?.p50),
+          p99: length(known.p99, row.time?.p99),
+          overruns: add(known.overruns, Math.max(0, row.overruns - last.overruns) / span),
         });
       }
       this.histories = histories;

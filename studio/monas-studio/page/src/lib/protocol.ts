@@ -273,6 +273,23 @@ export interface TapeFacts {
   live?: boolean;
 }
 
+/** What a chart knows at the present moment of a run; times in seconds. */
+export interface ChartValues {
+  key: string;
+  /** Its last step. */
+  t: number;
+  /** Whether guards hold; null without a value. */
+  guards: { transition: number; scope: number; holds: boolean | null }[];
+  timers: { scope: number; name: string; due: number | null }[];
+  /** The regions with a blackboard. */
+  scopes: {
+    scope: number;
+    name: string;
+    is_lent: boolean;
+    messages: { topic: string; host: string; publisher: string; sequence: number; t: number | null; message: Json }[];
+  }[];
+}
+
 export interface Frame {
   type: 'frame';
   now: number;
@@ -285,6 +302,7 @@ export interface Frame {
   scene?: SceneNews;
   sample?: Sample;
   camera?: CameraNews;
+  values?: ChartValues;
   /** The moment is not a later one: what came since holds no more. */
   elsewhere?: boolean;
   tape?: TapeFacts;
