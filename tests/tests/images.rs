@@ -7,7 +7,7 @@ use monas_match::{MatchOptions, MatchSource};
 use monas_nao as _; // the body registers itself at link time
 use monas_robot::{Disturbances, ObjectKind, Percepts, Robot, Sighting, WrappedBody};
 use monas_sim::{MatchRules, Pose, Setup, SharedField, SimulatedWorld, Vector};
-use monas_soccer::image_interpreter::ImageInterpreter;
+use monas_soccer::image_interpreter::{ImageInterpreter, Interpretation};
 use narukom::Timestamp;
 
 /// A world in which play has begun and the robots stand in a corner, but for the one at index 1.
@@ -26,6 +26,31 @@ fn of(objects: &[Sighting], kinds: &[ObjectKind]) -> Vec<Sighting> {
     objects.iter().filter(|object| kinds.contains(&object.kind())).copied().collect()
 }
 
+/// The mean distance of points between the ends from the nearest line of the field of the default
+/// geometry.
+fn away_from_lines(ends: [Vector; 2]) -> f64 {
+    let (length, width, front, side) = (3.0, 2.0, 2.4, 1.1);
+    let away = |point: Vector| {
+        let (x, y) = (point.x.abs(), point.y.abs());
+        // Distance from a stroke along y (at x, up to y) and from one along x.
+        let across = |at: f64, until: f64| Vector::new(x - at, (y - until).max(0.0)).norm();
+        let along =
+            |at: f64, from: f64, until: f64| Vector::new(y - at, (x - until).max(from - x).max(0.0)).norm();
+        let circle = (point.norm() - 0.6).abs();
+        [across(length, width), along(width, 0.0, length), across(0.0, width), across(front, side)]
+            .into_iter()
+            .chain([along(side, front, length), circle])
+            .fold(9.0, f64::min)
+    };
+    (0..=4).map(|part| away(ends[0] + (ends[1] - ends[0]) * (f64::from(part) / 4.0))).sum::<f64>() / 5.0
+}
+
+/// The distance of a point from the edge of the carpet.
+fn away_from_border(point: Vector) -> f64 {
+    let (x, y) = (3.7 - point.x.abs(), 2.7 - point.y.abs());
+    if x.min(y) >= 0.0 { x.min(y) } else { Vector::new(x.min(0.0), y.min(0.0)).norm() }
+}
+
 #[test]
 fn what_images_show_is_where_it_is() {
     let field = SharedField::new(world(3));
@@ -33,6 +58,7 @@ fn what_images_show_is_where_it_is() {
     body.deliver_images().unwrap();
     let (mut percepts, mut interpreter) = (Percepts::default(), ImageInterpreter::default());
     let (mut shown, mut errors, mut false_balls, mut posts, mut images) = (0, Vec::new(), 0, Vec::new(), 0);
+    let (mut lines, mut border) = (Vec::new(), Vec::new());
     let mut now = 0;
     for round in 0..60 {
         // From 0.6 to 2.6 m, up to 20 degrees aside, while the light changes.
@@ -54,7 +80,15 @@ fn what_images_show_is_where_it_is() {
             assert_eq!(pixels.collect::<Vec<_>>(), [153_600; 2], "two images of 320 by 240");
             let (ball, own) = field.with_world(|world| (world.ball().position, world.robots()[1].pose));
             let truth = own.to_own(ball);
-            let seen = interpreter.interpret(taken, &percepts.sensors).unwrap();
+            let Interpretation { sightings: seen, lines: found } =
+                interpreter.interpret(taken, &percepts.sensors).unwrap();
+            assert!(found.taken_at == taken.taken_at && found.lines.len() <= 32 && found.border.len() <= 32);
+            lines.extend(found.lines.iter().map(|line| {
+                let ends = [(line.x1, line.y1), (line.x2, line.y2)].map(|(x, y)| Vector::new(x, y));
+                (ends[0].lerp(&ends[1], 0.5).norm(), away_from_lines(ends.map(|end| own.to_outer(end))))
+            }));
+            let ends = found.border.iter().map(|point| own.to_outer(Vector::new(point.x, point.y)));
+            border.extend(ends.map(away_from_border));
             shown += 1;
             for found in of(&seen.objects, &[ObjectKind::Ball]) {
                 let (sin, cos) = libm::sincos(found.bearing);
@@ -81,6 +115,18 @@ fn what_images_show_is_where_it_is() {
     // The inclination of the torso is measured with a deviation of 0.01 rad.
     assert!(error < 0.04 && false_balls <= 2, "error {error}, {false_balls} false balls");
     assert!(posts.len() > images, "{} posts in {images} images", posts.len());
+    let far = |all: &[f64], most: f64| all.iter().filter(|away| **away > most).count();
+    let near: Vec<f64> = lines.iter().filter(|(at, _)| *at < 2.5).map(|(_, away)| *away).collect();
+    let lines: Vec<f64> = lines.iter().map(|(_, away)| *away).collect();
+    let (line, edge) = (mean(&near), mean(&border));
+    println!("{} lines, {:.3} m off, {} beyond 0.3 m", lines.len(), mean(&lines), far(&lines, 0.3));
+    println!("{} lines up to 2.5 m, {line:.3} m off", near.len());
+    println!("{} points of the border, {edge:.3} m off, {} beyond 0.6 m", border.len(), far(&border, 0.6));
+    assert!(near.len() > images && line < 0.09, "{} lines, {line} m", near.len());
+    assert!(lines.len() > 3 * images && mean(&lines) < 0.12, "{} lines, {} m", lines.len(), mean(&lines));
+    assert!(far(&lines, 0.3) * 50 <= lines.len(), "{} of {}", far(&lines, 0.3), lines.len());
+    assert!(border.len() > 5 * images && edge < 0.2, "{} points, {edge} m", border.len());
+    assert!(far(&border, 0.6) * 20 <= border.len(), "{} of {}", far(&border, 0.6), border.len());
     assert!(away < 0.25 && wrong_posts * 50 <= posts.len(), "{away} m, {wrong_posts} of {}", posts.len());
 }
 

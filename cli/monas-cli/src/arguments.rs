@@ -165,7 +165,7 @@ pub(crate) enum Command {
     ///
     /// Prints what was seen, with distance and bearing from the pose of the camera, and writes each
     /// image with what was found as `NAME.seen.png`. The colours are calibrated from each image
-    /// itself.
+    /// itself, or begin with a colour table, which `--calibrate` makes from images.
     #[cfg(feature = "soccer")]
     #[command(after_help = "Example: monas vision --pitch 8 --view 60.9 frame.jpg")]
     Vision(VisionArguments),

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::fmt;
 
-use crate::{Disturbances, Error, ErrorKind, Robot, Skill, WrappedBody};
+use crate::{Disturbances, Error, ErrorKind, FieldColours, Robot, Skill, WrappedBody};
 
 /// A kind of body, as [`body_kind!`](crate::body_kind!) registers it at link time.
 #[derive(Clone, Copy)]
@@ -122,6 +122,8 @@ pub struct BodySettings {
     pub options: BTreeMap<String, String>,
     /// What its cameras deliver.
     pub vision: CameraOutput,
+    /// The colours of the field that its images carry, for the calibration to begin with.
+    pub colours: Option<FieldColours>,
     /// What lies between the body and the software.
     pub disturbances: Disturbances,
 }
@@ -147,7 +149,8 @@ impl Default for BodySettings {
     fn default() -> BodySettings {
         let disturbances = Disturbances::default();
         let (kind, options) = (BodyKind::DEFAULT.to_owned(), BTreeMap::new());
-        BodySettings { kind, address: None, options, vision: CameraOutput::default(), disturbances }
+        let (vision, colours) = (CameraOutput::default(), None);
+        BodySettings { kind, address: None, options, vision, colours, disturbances }
     }
 }
 
@@ -193,9 +196,11 @@ impl BodySettings {
         if self.vision == CameraOutput::Images {
             body.deliver_images()?;
         }
-        Ok(match self.disturbances == Disturbances::default() {
-            true => body,
-            false => Box::new(WrappedBody::new(body, self.disturbances, seed)),
+        Ok(match (&self.colours, self.disturbances == Disturbances::default()) {
+            (None, true) => body,
+            (colours, _) => {
+                Box::new(WrappedBody::new(body, self.disturbances, seed).with_colours(colours.clone()))
+            }
         })
     }
 }

@@ -7,7 +7,7 @@ use narukom::Timestamp;
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg64;
 
-use crate::{Actuators, Anatomy, Error, JointCommands, Leds, Limits, Percepts, Robot};
+use crate::{Actuators, Anatomy, Error, FieldColours, JointCommands, Leds, Limits, Percepts, Robot};
 
 /// Disturbances between a body and its robot's software. The default has none.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
@@ -32,13 +32,21 @@ pub struct WrappedBody {
     delayed: VecDeque<(Timestamp, Actuators)>,
     rests: bool,
     clamped: u64,
+    colours: Option<FieldColours>,
 }
 
 impl WrappedBody {
     /// Wraps a body.
     pub fn new(body: Box<dyn Robot>, disturbances: Disturbances, seed: u64) -> WrappedBody {
         let random = Pcg64::seed_from_u64(seed);
-        WrappedBody { body, disturbances, random, delayed: VecDeque::new(), rests: false, clamped: 0 }
+        let delayed = VecDeque::new();
+        WrappedBody { body, disturbances, random, delayed, rests: false, clamped: 0, colours: None }
+    }
+
+    /// The body with these colours in its images, for the calibration to begin with.
+    #[must_use]
+    pub fn with_colours(self, colours: Option<FieldColours>) -> WrappedBody {
+        WrappedBody { colours, ..self }
     }
 
     /// The number of commands in the plane that had a value beyond the limits of the anatomy, or
@@ -134,6 +142,9 @@ impl Robot for WrappedBody {
         self.deliver(now)?;
         self.body.sense(now, percepts)?;
         self.disturb(percepts);
+        if let (Some(images), Some(colours)) = (&mut percepts.images, &self.colours) {
+            images.colours = Some(colours.clone());
+        }
         Ok(())
     }
 

@@ -6,12 +6,15 @@ mod monitors;
 mod publishers;
 
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use monas_robot::{BodyKind, BodyOption, BodySettings, CameraOutput, Disturbances, OptionKind, Surroundings};
+use monas_robot::{
+    BodyKind, BodyOption, BodySettings, CameraOutput, Disturbances, FieldColours, OptionKind, Surroundings,
+};
 use yase::{Diagnostic, Source};
 
+use super::colours;
 use super::element::{Attribute, Element};
 use super::grammar::{self, Grammar, Kind};
 use super::layers::Layers;
@@ -151,16 +154,47 @@ impl AgentReader<'_> {
             self.diagnostics.push(found.with_hint("link the crate of the body: `use its_name as _;`"));
         }
         let options = self.body_options(&kind, &values);
+        let vision = values.word("vision", &CameraOutput::NAMES).unwrap_or_default();
         BodySettings {
             kind,
             options,
             address: values.text("address").map(str::to_owned),
-            vision: values.word("vision", &CameraOutput::NAMES).unwrap_or_default(),
+            vision,
+            colours: values.given("colours").and_then(|given| self.colours(given, vision)),
             disturbances: Disturbances {
                 delay: values.duration("delay").unwrap_or_default(),
                 noise: values.number("noise").unwrap_or_default(),
                 loss: values.number("loss").unwrap_or_default(),
             },
+        }
+    }
+
+    /// The colours in the file that an attribute names; none, with diagnostics, if they are not
+    /// usable.
+    fn colours(&mut self, given: &Attribute, vision: CameraOutput) -> Option<FieldColours> {
+        if vision != CameraOutput::Images {
+            let message = "`body` has `colours`, which images need, but lacks the attribute `vision`";
+            self.diagnostics.push(given.name_error("E0305", message).with_hint("add `vision=\"images\"`"));
+        }
+        let file = self.file(given, "`monas vision --calibrate` makes a colour table")?;
+        let (colours, found) = colours::load(&file);
+        self.diagnostics.extend(found);
+        colours
+    }
+
+    /// The file that an attribute names; none, with a diagnostic, if there is none.
+    fn file(&mut self, given: &Attribute, hint: &str) -> Option<PathBuf> {
+        let value = given.value.trim();
+        match paths::locate(self.path, value) {
+            Ok(found) => Some(found),
+            Err(near) => {
+                let diagnostic = given.error("E0316", format!("no file `{value}`"));
+                self.diagnostics.push(match near {
+                    Some(near) => diagnostic.with_hint(format!("did you mean `{near}`?")),
+                    None => diagnostic.with_hint(hint),
+                });
+                None
+            }
         }
     }
 
@@ -200,17 +234,7 @@ impl AgentReader<'_> {
                 return Some(if grammar::flag(value) == Some(true) { "1" } else { "0" }.to_owned());
             }
             OptionKind::File => {
-                return match paths::locate(self.path, value) {
-                    Ok(found) => Some(found.to_string_lossy().into_owned()),
-                    Err(near) => {
-                        let diagnostic = given.error("E0316", format!("no file `{value}`"));
-                        self.diagnostics.push(match near {
-                            Some(near) => diagnostic.with_hint(format!("did you mean `{near}`?")),
-                            None => diagnostic.with_hint(option.doc),
-                        });
-                        None
-                    }
-                };
+                return self.file(given, option.doc).map(|found| found.to_string_lossy().into_owned());
             }
             OptionKind::Name => "a name",
             OptionKind::Number => "a number",

@@ -103,6 +103,7 @@
 //! there are errors.
 
 mod agents;
+pub mod colours;
 mod configuration_bundle;
 mod element;
 mod grammar;

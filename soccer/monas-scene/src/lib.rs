@@ -5,7 +5,7 @@
 //! both for matches on the embedded field. It draws the ground truth if there is one, what each
 //! robot believes, the score, and the calls of the referee that a viewer may make; falls and the
 //! referee's decisions become events of the timeline. The images of robots on `body/images` become
-//! PNG.
+//! PNG. [`RgbImage`] is an image in a file.
 //!
 //! It is a crate of its own, because the command line has no soccer in it, and matches have no
 //! studio.
@@ -25,8 +25,10 @@
 //! ```
 
 mod png_image;
+mod rgb_image;
 mod robot_cameras;
 mod soccer_field;
 
 pub use png_image::encode_png;
+pub use rgb_image::RgbImage;
 pub use soccer_field::SoccerField;

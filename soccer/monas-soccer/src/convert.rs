@@ -18,7 +18,8 @@ use crate::functionality::motion::{
 };
 use crate::functionality::walk::Walk;
 use crate::{
-    Ball, GameState, LedRequest, MotionKind, MotionRequest, OtherRobot, PlayerState, Pose, SensorEntry,
+    Ball, Colour, GameState, LedRequest, MotionKind, MotionRequest, OtherRobot, PlayerState, Pose,
+    SensorEntry,
 };
 
 /// `time_to_cross` of a ball that will not cross, seconds.
@@ -104,9 +105,13 @@ impl GameState {
         }
     }
 
-    /// The goal of the given colour.
-    pub(crate) fn goal_of(&self, colour: i32) -> Goal {
-        if colour == self.goal_to_attack { Goal::Opponent } else { Goal::Own }
+    /// The goal of the given colour. Only yellow and blue distinguish the goals: both goals may be
+    /// white.
+    pub(crate) fn goal_of(&self, colour: i32) -> Option<Goal> {
+        let is_distinct = |colour| [Colour::Yellow, Colour::Blue].map(i32::from).contains(&colour);
+        let is_known = is_distinct(colour) && is_distinct(self.goal_to_attack);
+        let goal = if colour == self.goal_to_attack { Goal::Opponent } else { Goal::Own };
+        is_known.then_some(goal)
     }
 
     /// The player's state as functionalities know it.
@@ -188,7 +193,8 @@ pub(crate) fn position(sighting: &Sighting) -> Point2<f64> {
     geometry::polar(sighting.distance, sighting.bearing).into()
 }
 
-/// A sighting of a goal post; none for other objects.
+/// A sighting of a goal post; none for other objects, and for a post that does not say of which
+/// goal it is.
 pub(crate) fn post(sighting: &Sighting, game: &GameState) -> Option<PostSighting> {
     let post = match sighting.kind() {
         ObjectKind::LeftPost => GoalPost::Left,
@@ -196,7 +202,7 @@ pub(crate) fn post(sighting: &Sighting, game: &GameState) -> Option<PostSighting
         ObjectKind::SomePost => GoalPost::Either,
         _ => return None,
     };
-    let goal = game.goal_of(sighting.colour);
+    let goal = game.goal_of(sighting.colour)?;
     Some(PostSighting { goal, post, distance: sighting.distance, bearing: sighting.bearing })
 }
 
@@ -234,7 +240,7 @@ mod tests {
     fn colours_have_the_same_numbers_on_both_sides() {
         for number in 0..=11 {
             let body = monas_robot::Colour::try_from(number).map(|colour| colour.as_str_name().to_owned());
-            let soccer = crate::Colour::try_from(number).map(|colour| colour.as_str_name().to_owned());
+            let soccer = Colour::try_from(number).map(|colour| colour.as_str_name().to_owned());
             assert_eq!(body.ok(), soccer.ok(), "colour {number}");
         }
     }
@@ -246,6 +252,23 @@ mod tests {
             let soccer = crate::SetPlay::try_from(number).map(|play| play.as_str_name().to_owned());
             assert_eq!(body.ok(), soccer.ok(), "set play {number}");
         }
+    }
+
+    #[test]
+    fn a_white_post_is_of_neither_goal() {
+        let goal = |seen: Colour, attacked: Colour| {
+            let game = GameState { goal_to_attack: attacked.into(), ..GameState::default() };
+            let kind = ObjectKind::LeftPost.into();
+            let sighting = Sighting { kind, colour: seen.into(), distance: 2.0, ..Sighting::default() };
+            post(&sighting, &game).map(|post| post.goal)
+        };
+        assert_eq!(goal(Colour::Yellow, Colour::Yellow), Some(Goal::Opponent));
+        assert_eq!(goal(Colour::Blue, Colour::Yellow), Some(Goal::Own));
+        assert_eq!(goal(Colour::Yellow, Colour::Blue), Some(Goal::Own));
+        for attacked in [Colour::Yellow, Colour::Blue, Colour::White, Colour::NoColour] {
+            assert_eq!(goal(Colour::White, attacked), None, "attacked: {attacked:?}");
+        }
+        assert_eq!(goal(Colour::Yellow, Colour::NoColour), None, "the sides are not known");
     }
 
     #[test]

@@ -1,7 +1,14 @@
-//! From images to sightings.
+//! From images to sightings, lines and border.
 
-use monas_robot::{Colour, Image, Images, ObjectKind, Sensors, Sighting, Sightings};
-use monas_vision::{Camera, FieldObjects, GoalPaint, GoalPost, HeadPose, Jersey, PostSide, Sight, Vision};
+use monas_robot::{Colour, FieldColours, Image, Images, ObjectKind, Sensors, Sighting, Sightings};
+use monas_vision::{
+    Camera, FieldObjects, GoalPaint, GoalPost, GroundPoint, HeadPose, Jersey, LineSegment, PostSide, Sight,
+    Vision,
+};
+use nalgebra::Point2;
+
+use crate::field_colours::colour_model;
+use crate::{FieldLine, FieldLines, FieldPoint};
 
 /// Interprets the images of a robot's cameras: what a body with finished sightings delivers,
 /// derived from pixels.
@@ -11,14 +18,29 @@ use monas_vision::{Camera, FieldObjects, GoalPaint, GoalPost, HeadPose, Jersey, 
 #[derive(Clone, Debug)]
 pub struct ImageInterpreter {
     vision: Vision,
+    /// The colours of the images with which the calibration began.
+    colours: Option<FieldColours>,
+}
+
+/// What images show.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Interpretation {
+    /// Ball, posts and robots.
+    pub sightings: Sightings,
+    /// Field lines and the border of the field.
+    pub lines: FieldLines,
 }
 
 impl Default for ImageInterpreter {
     /// Looks for the ball and the goals of 2010.
     fn default() -> ImageInterpreter {
-        ImageInterpreter { vision: Vision::new(FieldObjects::OF_2010) }
+        ImageInterpreter { vision: Vision::new(FieldObjects::OF_2010), colours: None }
     }
 }
+
+/// The most lines, and the most points of the border, of a message.
+const MOST_LINES: usize = 32;
+const MOST_POINTS: usize = 32;
 
 /// Directions of two posts below which they are one, rad.
 const SAME_POST: f64 = 0.12;
@@ -32,7 +54,12 @@ impl ImageInterpreter {
         &mut self,
         images: &Images,
         sensors: &Sensors,
-    ) -> Result<Sightings, monas_vision::Error> {
+    ) -> Result<Interpretation, monas_vision::Error> {
+        if images.colours.is_some() && images.colours != self.colours {
+            self.colours.clone_from(&images.colours);
+            let model = self.colours.as_ref().map(colour_model).unwrap_or_default();
+            self.vision = Vision::starting_from(FieldObjects::OF_2010, model);
+        }
         let mut sightings = Sightings {
             taken_at: images.taken_at,
             head_yaw: sensors.head_yaw,
@@ -42,10 +69,12 @@ impl ImageInterpreter {
         // The lower camera first: it shows the feet of what both show.
         let mut order: Vec<&Image> = images.images.iter().collect();
         order.sort_by(|a, b| b.camera_tilt.total_cmp(&a.camera_tilt));
+        let (mut lines, mut border) = (Vec::new(), Vec::new());
         for image in order {
-            self.add(image, sensors, &mut sightings.objects)?;
+            self.add(image, sensors, &mut sightings.objects, &mut lines, &mut border)?;
         }
-        Ok(sightings)
+        let lines = FieldLines { taken_at: images.taken_at, lines: longest(lines), border: spread(border) };
+        Ok(Interpretation { sightings, lines })
     }
 
     fn add(
@@ -53,6 +82,8 @@ impl ImageInterpreter {
         message: &Image,
         sensors: &Sensors,
         objects: &mut Vec<Sighting>,
+        lines: &mut Vec<LineSegment>,
+        border: &mut Vec<GroundPoint>,
     ) -> Result<(), monas_vision::Error> {
         let (width, height) = (message.width as usize, message.height as usize);
         let image = monas_vision::Image::new(width, height, &message.pixels)?;
@@ -65,6 +96,8 @@ impl ImageInterpreter {
         };
         let camera = Camera::new(width, height, message.angle_of_view, &head.robot_from_camera())?;
         let seen = self.vision.see(&image, &camera)?;
+        lines.extend_from_slice(&seen.lines);
+        border.extend_from_slice(&seen.border_points);
         let is_known =
             |objects: &[Sighting], found: &Sighting| objects.iter().any(|known| is_same(known, found));
         let ball = seen.ball.iter().map(|ball| sighting(ObjectKind::Ball, Colour::Orange, ball));
@@ -84,6 +117,43 @@ impl ImageInterpreter {
         }
         Ok(())
     }
+}
+
+/// The longest lines, without those that lie on a longer one: both cameras may show the same.
+fn longest(mut lines: Vec<LineSegment>) -> Vec<FieldLine> {
+    lines.sort_by(|a, b| b.length().total_cmp(&a.length()));
+    let mut kept: Vec<LineSegment> = Vec::new();
+    for line in lines {
+        if kept.len() < MOST_LINES && !kept.iter().any(|longer| lies_on(&line, longer)) {
+            kept.push(line);
+        }
+    }
+    let message = |line: &LineSegment| {
+        let [a, b] = line.ends.map(|end| end.position);
+        FieldLine { x1: a.x, y1: a.y, x2: b.x, y2: b.y }
+    };
+    kept.iter().map(message).collect()
+}
+
+/// Whether the ends of a line are on another, or near it.
+fn lies_on(line: &LineSegment, other: &LineSegment) -> bool {
+    /// Distance that is near, m: lines of a field are farther apart.
+    const NEAR: f64 = 0.12;
+    let [a, b] = other.ends.map(|end| end.position);
+    let along = (b - a) / (b - a).norm().max(1e-9);
+    let is_on = |point: Point2<f64>| {
+        let away = point - a;
+        let place = away.dot(&along);
+        away.perp(&along).abs() < NEAR && place > -NEAR && place < (b - a).norm() + NEAR
+    };
+    line.ends.iter().all(|end| is_on(end.position))
+}
+
+/// As many points as a message holds, evenly chosen.
+fn spread(points: Vec<GroundPoint>) -> Vec<FieldPoint> {
+    let every = points.len().div_ceil(MOST_POINTS).max(1);
+    let point = |point: &GroundPoint| FieldPoint { x: point.position.x, y: point.position.y };
+    points.iter().step_by(every).map(point).collect()
 }
 
 /// Whether two sightings from different cameras are of one object.
@@ -124,7 +194,7 @@ mod tests {
     fn a_broken_image_is_an_error() {
         let image =
             Image { width: 64, height: 48, angle_of_view: 0.8, camera_height: 0.5, ..Image::default() };
-        let images = Images { taken_at: 1, images: vec![image] };
+        let images = Images { taken_at: 1, images: vec![image], ..Images::default() };
         let error = ImageInterpreter::default().interpret(&images, &Sensors::default()).unwrap_err();
         assert_eq!(error.kind(), monas_vision::ErrorKind::Length);
     }

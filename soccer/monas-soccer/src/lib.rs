@@ -74,6 +74,7 @@
 
 pub mod activities;
 pub mod convert;
+pub mod field_colours;
 pub mod functionality;
 pub mod image_interpreter;
 pub mod perception;

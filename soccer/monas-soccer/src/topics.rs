@@ -3,8 +3,8 @@
 use narukom::{Data, State};
 
 use crate::{
-    Attack, Ball, Calibration, GameState, HeadRequest, LedRequest, MotionRequest, MotionState, Pose, Robots,
-    SensorEntry, Team,
+    Attack, Ball, Calibration, FieldLines, GameState, HeadRequest, LedRequest, MotionRequest, MotionState,
+    Pose, Robots, SensorEntry, Team,
 };
 
 narukom::topic! {
@@ -16,6 +16,9 @@ narukom::topic! {
     pub POSE: State<Pose> = "soccer/pose";
     /// Other robots, published by Vision.
     pub ROBOTS: State<Robots> = "soccer/robots";
+    /// Field lines and border, published by Vision for each set of images; not from finished
+    /// sightings.
+    pub FIELD_LINES: State<FieldLines> = "soccer/field_lines";
     /// History of sensor readings over slightly more than a second, published by Sensors.
     pub SENSORS: Data<SensorEntry, 128> = "soccer/sensors";
     /// Requests of behaviours for motions of the body.

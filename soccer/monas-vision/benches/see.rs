@@ -6,7 +6,7 @@
 
 use divan::Bencher;
 use monas_vision::render::{Light, Renderer, RobotFigure, Scene};
-use monas_vision::{Camera, FieldObjects, HeadPose, Image, Jersey, Vision};
+use monas_vision::{Camera, ColourModel, FieldObjects, HeadPose, Image, Jersey, ObjectHue, Vision};
 use nalgebra::Point2;
 
 fn main() {
@@ -51,6 +51,29 @@ fn orange_ball(bencher: Bencher<'_, '_>, width: usize) {
 #[divan::bench(args = [640, 320])]
 fn black_and_white_ball(bencher: Bencher<'_, '_>, width: usize) {
     see(bencher, FieldObjects::OF_TODAY, width);
+}
+
+/// Light that changes from image to image, so that each changes the whole table, with measured
+/// hues.
+#[divan::bench(args = [640, 320])]
+fn changing_light(bencher: Bencher<'_, '_>, width: usize) {
+    let objects = FieldObjects::OF_2010;
+    let camera = camera(width);
+    let images = [0.5, 1.3].map(|exposure| {
+        let light = Light { noise: 3.5, blur: 0.7, exposure, ..Light::default() };
+        let mut pixels = Vec::new();
+        Renderer::default().draw(&scene(objects), &camera, &light, 1, &mut pixels).unwrap();
+        pixels
+    });
+    let hue = |chroma| Some(ObjectHue { chroma, width: 0.12 });
+    let hues = [hue([-0.46, 0.56]), hue([-0.49, 0.16]), hue([0.9, -0.5]), hue([-0.3, 1.0])];
+    let mut vision = Vision::starting_from(objects, ColourModel { hues, ..ColourModel::default() });
+    let mut number = 0;
+    bencher.bench_local(|| {
+        number += 1;
+        let image = Image::new(width, width * 3 / 4, &images[number % 2]).unwrap();
+        vision.see(&image, &camera).unwrap().line_points.len()
+    });
 }
 
 #[divan::bench(args = [640, 320], sample_count = 10)]

@@ -12,7 +12,8 @@ use measure::{CONDITIONS, Measures, Sequence};
 /// The columns of a line of [`Measures`].
 const HEADER: &str = "\
 of each kind: number shown, recall %, false ones, error of distance % (mean, of 9 in 10), of direction in degrees
-               ball                              | posts                             | robots                            | lines found %, false % | border %";
+line points: found %, false %; border: right columns %; line parts: covered %, false %, offset cm, angle degrees; border points: error of distance %, false %
+               ball                              | posts                             | robots                            | line points | border | line parts            | border points";
 
 fn main() {
     let number = |at: usize, default: u32| {
@@ -22,9 +23,9 @@ fn main() {
     println!("{HEADER}");
     for (name, objects) in [("2010", FieldObjects::OF_2010), ("today", FieldObjects::OF_TODAY)] {
         let mut all = Measures::default();
-        for (condition, light) in CONDITIONS.iter().enumerate() {
+        for condition in &CONDITIONS {
             let measures = Sequence { objects, condition, images, width, seed: 1 }.measure();
-            println!("{name:<6}{:<9}{measures}", light.name);
+            println!("{name:<6}{:<9}{measures}", condition.name);
             all.add(&measures);
         }
         println!("{name:<6}{:<9}{all}", "all");

@@ -114,6 +114,16 @@ impl Camera {
         if above <= 0.0 { 0.0 } else { (self.focal * -self.ray(x, y).z / above).max(0.0) }
     }
 
+    /// Columns from one row to the next of what stands upright at a pixel; zero for a camera that
+    /// is rolled by more than an eighth of a turn.
+    pub fn slope_of_vertical(&self, x: f64, y: f64) -> f64 {
+        let left = (self.width as f64 / 2.0 - x) / self.focal;
+        let up = (self.height as f64 / 2.0 - y) / self.focal;
+        let (ahead, aside, above) = (self.rotation[(2, 0)], self.rotation[(2, 1)], self.rotation[(2, 2)]);
+        let (across, along) = (aside - left * ahead, above - up * ahead);
+        if along > across.abs() { across / along } else { 0.0 }
+    }
+
     /// The row of the horizon in a column of pixels; it may lie outside the image. A camera that
     /// lies on its side has none, and then it is far above the image.
     pub fn horizon(&self, x: f64) -> f64 {
@@ -195,6 +205,19 @@ mod tests {
         assert!(right.position().y < 0.0);
         let forward = camera(HeadPose { torso_pitch: 0.1, ..straight });
         assert!(forward.horizon(320.0) < 240.0 && forward.position().x > 0.0);
+    }
+
+    #[test]
+    fn what_is_upright_has_a_slope() {
+        let pose = HeadPose { height: 0.5, torso_roll: 0.1, torso_pitch: -0.05, yaw: 0.7, pitch: 0.3 };
+        for pose in [pose, HeadPose { torso_roll: -0.2, ..pose }] {
+            let camera = camera(pose);
+            let [foot, head] = [0.0, 0.4].map(|z| camera.project(&Point3::new(2.0, 1.4, z)).unwrap());
+            let slope = (foot.0 - head.0) / (foot.1 - head.1);
+            assert!(slope.abs() > 0.02, "{slope}");
+            assert!((camera.slope_of_vertical(foot.0, foot.1) - slope).abs() < 1e-9);
+            assert!((camera.slope_of_vertical(head.0, head.1) - slope).abs() < 1e-9);
+        }
     }
 
     #[test]

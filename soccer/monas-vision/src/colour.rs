@@ -5,6 +5,7 @@
 //! an image what the table depends on: the carpet is the most frequent greenish chroma below the
 //! horizon, and white is what is clearly brighter than the carpet and has little chroma.
 
+use crate::hue::{AdaptedHue, ObjectHue};
 use crate::{Camera, Image};
 
 /// The class of a colour.
@@ -62,6 +63,9 @@ pub struct ColourModel {
     pub white: [f32; 2],
     /// Standard deviation of the luma of the carpet: noise, and light that is not even.
     pub deviation: f32,
+    /// Hues of objects that were measured, for each of [`ObjectHue::CLASSES`]. The usual hues also
+    /// hold.
+    pub hues: [Option<ObjectHue>; 4],
 }
 
 impl Default for ColourModel {
@@ -73,6 +77,7 @@ impl Default for ColourModel {
             white_luma: 220.0,
             white: [0.0, 0.0],
             deviation: 5.0,
+            hues: [None; 4],
         }
     }
 }
@@ -86,8 +91,21 @@ const LEAST_CHROMA: f32 = 12.0;
 impl ColourModel {
     /// The class of a colour.
     pub fn class(&self, luma: f32, u: f32, v: f32) -> ColourClass {
+        self.class_with(&self.adapted_hues(), [luma, u, v])
+    }
+
+    /// The measured hues in the light of the model.
+    fn adapted_hues(&self) -> [Option<AdaptedHue>; 4] {
+        let mut classes = ObjectHue::CLASSES.into_iter();
+        self.hues.map(|hue| classes.next().zip(hue).and_then(|(class, hue)| hue.adapted(class, self.white)))
+    }
+
+    fn class_with(&self, hues: &[Option<AdaptedHue>; 4], [luma, u, v]: [f32; 3]) -> ColourClass {
         let scale = luma.max(DARKEST);
         let chroma = [(u - 128.0) / scale - self.white[0], (v - 128.0) / scale - self.white[1]];
+        if let Some(class) = AdaptedHue::nearest(hues, chroma, scale) {
+            return class;
+        }
         let green = [self.green[0] - self.white[0], self.green[1] - self.white[1]];
         let size = (green[0] * green[0] + green[1] * green[1]).max(1e-4);
         // Along and across the direction of the carpet's chroma, which is at (1, 0).
@@ -124,7 +142,7 @@ impl ColourModel {
     }
 
     /// The model a part of the way from this to another.
-    fn towards(&self, other: &ColourModel, part: f32) -> ColourModel {
+    pub(crate) fn towards(&self, other: &ColourModel, part: f32) -> ColourModel {
         let mix = |a: f32, b: f32| a + part * (b - a);
         ColourModel {
             green_luma: mix(self.green_luma, other.green_luma),
@@ -132,6 +150,7 @@ impl ColourModel {
             white_luma: mix(self.white_luma, other.white_luma),
             white: [mix(self.white[0], other.white[0]), mix(self.white[1], other.white[1])],
             deviation: mix(self.deviation, other.deviation),
+            hues: self.hues,
         }
     }
 }
@@ -194,11 +213,12 @@ impl ColourTable {
 
     fn fill(&mut self, model: ColourModel) {
         self.model = model;
+        let hues = model.adapted_hues();
         for (cell, class) in self.classes.iter_mut().enumerate() {
             let luma = (cell >> (2 * CHROMA_BITS)) as f32 * 8.0 + 4.0;
             let u = ((cell >> CHROMA_BITS) & 63) as f32 * 4.0 + 2.0;
             let v = (cell & 63) as f32 * 4.0 + 2.0;
-            *class = model.class(luma, u, v);
+            *class = model.class_with(&hues, [luma, u, v]);
         }
     }
 }
@@ -215,6 +235,8 @@ const BINS: usize = 64;
 #[derive(Clone, Debug)]
 pub struct Calibration {
     model: ColourModel,
+    /// Whether the model is of this light: of images, or given.
+    is_measured: bool,
     /// The number of images that contributed.
     images: u32,
     /// Samples in each bin of U and V, as far as they may be carpet.
@@ -228,6 +250,7 @@ impl Default for Calibration {
     fn default() -> Calibration {
         Calibration {
             model: ColourModel::default(),
+            is_measured: false,
             images: 0,
             chroma: vec![0; BINS * BINS],
             green_luma: [0; 256],
@@ -237,6 +260,11 @@ impl Default for Calibration {
 }
 
 impl Calibration {
+    /// A calibration that goes on from a model. The first image changes it as later ones do.
+    pub fn starting_from(model: ColourModel) -> Calibration {
+        Calibration { model, is_measured: true, ..Calibration::default() }
+    }
+
     /// The model of the images so far.
     pub fn model(&self) -> &ColourModel {
         &self.model
@@ -253,7 +281,8 @@ impl Calibration {
     /// The first image decides alone; later ones change the model half of the way.
     pub fn observe(&mut self, image: &Image<'_>, camera: &Camera) -> bool {
         let Some(model) = self.estimate(image, camera) else { return false };
-        self.model = if self.images == 0 { model } else { self.model.towards(&model, 0.5) };
+        self.model = if self.is_measured { self.model.towards(&model, 0.5) } else { model };
+        self.is_measured = true;
         self.images = self.images.saturating_add(1);
         true
     }
@@ -289,7 +318,8 @@ impl Calibration {
                 ((ratio * green_luma).min(255.0), self.model.white)
             }
         };
-        Some(ColourModel { green_luma, green, white_luma, white, deviation })
+        let hues = self.model.hues;
+        Some(ColourModel { green_luma, green, white_luma, white, deviation, hues })
     }
 
     /// The relative chroma of the carpet, and the number of samples; fills `green_luma`.
@@ -353,13 +383,13 @@ fn is_greenish(luma: u8, u: u8, v: u8) -> bool {
     luma >= 12 && v < -0.06 && u < 0.12 && u + v < -0.14 && u > 3.0 * v - 0.1
 }
 
-fn relative(luma: u8, u: u8, v: u8) -> [f32; 2] {
+pub(crate) fn relative(luma: u8, u: u8, v: u8) -> [f32; 2] {
     let scale = f32::from(luma).max(DARKEST);
     [(f32::from(u) - 128.0) / scale, (f32::from(v) - 128.0) / scale]
 }
 
 /// Calls a function with about five thousand pixels below the horizon.
-fn for_each_sample(image: &Image<'_>, camera: &Camera, mut visit: impl FnMut([u8; 3])) {
+pub(crate) fn for_each_sample(image: &Image<'_>, camera: &Camera, mut visit: impl FnMut([u8; 3])) {
     let step = (image.width() / 80).max(2);
     for x in (step / 2..image.width()).step_by(step) {
         let from = camera.horizon(x as f64).clamp(0.0, image.height() as f64) as usize;
@@ -370,7 +400,7 @@ fn for_each_sample(image: &Image<'_>, camera: &Camera, mut visit: impl FnMut([u8
 }
 
 /// The value below which a part of the samples lies.
-fn quantile(counts: &[u32; 256], part: f32) -> f32 {
+pub(crate) fn quantile(counts: &[u32; 256], part: f32) -> f32 {
     let total: u32 = counts.iter().sum();
     let wanted = (part * total as f32) as u32;
     let mut below = 0;

@@ -18,6 +18,10 @@ pub enum ErrorKind {
     Length,
     /// An angle of view, a height or a pose is not finite or not possible.
     Camera,
+    /// A sample of a colour lies outside its image, holds too few pixels, or is of many colours.
+    Sample,
+    /// No image shows carpet, or two sampled colours cannot be distinguished.
+    Colours,
 }
 
 impl Error {

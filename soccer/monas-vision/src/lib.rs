@@ -13,8 +13,10 @@
 //! between carpet as wide as a line.
 //!
 //! Everything is a function of the images: there are no threads, no clocks and no files. After a
-//! few images [`Vision::see`] does not allocate. [`render`] draws images of a field from a known
-//! pose, with noise, blur, exposure and changing light, so that recall and errors can be measured.
+//! few images [`Vision::see`] does not allocate. [`ColourSampler`] makes the colours with which a
+//! vision may begin from images with boxes of known colours. [`render`] draws images of a field
+//! from a known pose, with noise, blur, exposure and changing light, so that recall and errors can
+//! be measured.
 //!
 //! ```
 //! use monas_vision::render::{Light, Renderer, Scene};
@@ -43,7 +45,9 @@
 mod camera;
 mod class_map;
 mod colour;
+mod colour_sampler;
 mod error;
+mod hue;
 mod image;
 mod objects;
 mod overlay;
@@ -53,11 +57,13 @@ mod vision;
 
 pub use camera::{Camera, HeadPose};
 pub use colour::{Calibration, ColourClass, ColourModel, ColourTable};
+pub use colour_sampler::{ColourSampler, SampleBox};
 pub use error::{Error, ErrorKind};
+pub use hue::ObjectHue;
 pub use image::{Image, rgb_of_yuv, yuv_of_rgb, yuv422_of_rgb};
 pub use objects::{BallPattern, FieldObjects};
 pub use overlay::overlay;
 pub use seen::{
-    GoalPaint, GoalPost, Jersey, LinePoint, LineSegment, PixelBox, PostSide, Seen, SeenRobot, Sight,
+    GoalPaint, GoalPost, GroundPoint, Jersey, LineSegment, PixelBox, PostSide, Seen, SeenRobot, Sight,
 };
 pub use vision::Vision;

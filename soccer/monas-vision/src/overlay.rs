@@ -4,6 +4,7 @@ use crate::image::rgb_of_yuv;
 use crate::{GoalPaint, Image, Jersey, PixelBox, Seen};
 
 const BORDER: [u8; 3] = [255, 0, 255];
+const BORDER_POINT: [u8; 3] = [255, 255, 80];
 const LINE_POINT: [u8; 3] = [255, 40, 40];
 const LINE: [u8; 3] = [0, 230, 255];
 const BALL: [u8; 3] = [255, 150, 0];
@@ -12,13 +13,18 @@ const YELLOW_POST: [u8; 3] = [255, 255, 0];
 const BLUE_POST: [u8; 3] = [60, 120, 255];
 const ROBOT: [u8; 3] = [255, 255, 255];
 
-/// The image in RGB, with the border of the field (magenta), lines (cyan) and their points (red),
-/// the ball (an orange circle), posts (boxes in the colour of the goal, violet if it is white) and
-/// robots (boxes in the colour of the jersey, white without).
+/// The image in RGB, with the border of the field (magenta) and its points (yellow crosses), lines
+/// (cyan) and their points (red), the ball (an orange circle), posts (boxes in the colour of the
+/// goal, violet if it is white) and robots (boxes in the colour of the jersey, white without).
 pub fn overlay(image: &Image<'_>, seen: &Seen) -> Vec<u8> {
     let mut canvas = Canvas::of(image);
     for pair in seen.border.windows(2) {
         canvas.line(pair[0], pair[1], BORDER);
+    }
+    for point in &seen.border_points {
+        let [x, y] = point.pixel.map(|at| at as i64);
+        (0..3).for_each(|aside| canvas.dot(x + aside - 1, y, BORDER_POINT));
+        (0..3).for_each(|aside| canvas.dot(x, y + aside - 1, BORDER_POINT));
     }
     for line in &seen.lines {
         canvas.line(line.ends[0].pixel, line.ends[1].pixel, LINE);

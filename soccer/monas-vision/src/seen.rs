@@ -91,9 +91,9 @@ pub struct SeenRobot {
     pub jersey: Jersey,
 }
 
-/// A point on the middle of a line of the field.
+/// A point on the ground: of the middle of a line, or of the border of the field.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LinePoint {
+pub struct GroundPoint {
     /// Its pixel: column and row.
     pub pixel: [f64; 2],
     /// Its position on the ground, m.
@@ -104,7 +104,7 @@ pub struct LinePoint {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LineSegment {
     /// Its ends.
-    pub ends: [LinePoint; 2],
+    pub ends: [GroundPoint; 2],
 }
 
 impl LineSegment {
@@ -124,12 +124,15 @@ pub struct Seen {
     /// Other robots, from left to right.
     pub robots: Vec<SeenRobot>,
     /// Points of lines.
-    pub line_points: Vec<LinePoint>,
+    pub line_points: Vec<GroundPoint>,
     /// Straight parts of lines.
     pub lines: Vec<LineSegment>,
     /// The border of the field from left to right: columns and rows of pixels. Empty if the image
     /// shows no carpet.
     pub border: Vec<[f64; 2]>,
+    /// Points of the border at which the carpet was seen to end, from left to right: not where it
+    /// leaves the image, nor where an object hides its end.
+    pub border_points: Vec<GroundPoint>,
 }
 
 impl Seen {
@@ -152,5 +155,6 @@ impl Seen {
         self.line_points.clear();
         self.lines.clear();
         self.border.clear();
+        self.border_points.clear();
     }
 }

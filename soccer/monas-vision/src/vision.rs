@@ -64,6 +64,12 @@ impl Vision {
         }
     }
 
+    /// Vision that begins with known colours, such as those of a colour table. Images change them.
+    pub fn starting_from(objects: FieldObjects, model: ColourModel) -> Vision {
+        let (calibration, table) = (Calibration::starting_from(model), ColourTable::new(model));
+        Vision { calibration, table, ..Vision::new(objects) }
+    }
+
     /// Vision with fixed colours, which images do not change.
     pub fn with_colours(objects: FieldObjects, model: ColourModel) -> Vision {
         Vision { calibrates: false, table: ColourTable::new(model), ..Vision::new(objects) }

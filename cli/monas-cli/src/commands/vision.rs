@@ -1,17 +1,22 @@
 //! `monas vision`: what images of files show.
 
-mod image_file;
+mod calibrate;
 
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum, ValueHint};
-use monas_vision::{Camera, FieldObjects, GoalPaint, HeadPose, Image, Jersey, PostSide, Seen, Sight, Vision};
+use monas::config::colours;
+use monas_scene::RgbImage;
+use monas_soccer::field_colours::colour_model;
+use monas_vision::{
+    Camera, ColourModel, FieldObjects, GoalPaint, HeadPose, Image, Jersey, PostSide, Seen, Sight, Vision,
+};
 use serde_json::json;
 
 use crate::terminal::table::of_numbers;
 use crate::terminal::{CommandFailure, CommandOutput, Exit, Format, FormatArgument};
 
-use image_file::RgbImage;
+use calibrate::SampleArgument;
 
 /// Arguments of `monas vision`.
 #[derive(Args, Debug)]
@@ -38,6 +43,22 @@ pub(crate) struct VisionArguments {
     /// The folder for the overlays.
     #[arg(short, long, value_name = "FOLDER", default_value = ".", value_hint = ValueHint::DirPath)]
     output: PathBuf,
+    /// Begins with the colours of this table, in place of those of the image alone.
+    #[arg(long, value_name = "TABLE", value_hint = ValueHint::FilePath)]
+    colours: Option<PathBuf>,
+    /// Makes a colour table from the images, in place of overlays: for `--colours`, and for the
+    /// attribute `colours` of a body.
+    #[arg(long, value_name = "TABLE", value_hint = ValueHint::FilePath, conflicts_with = "colours")]
+    calibrate: Option<PathBuf>,
+    /// A box of an image with a known colour: green (carpet), white (lines), orange, yellow, blue
+    /// or red. With several images, FILE says in which it is.
+    #[arg(
+        long = "sample",
+        value_name = "[FILE:]COLOUR=X,Y,WIDTH,HEIGHT",
+        value_parser = SampleArgument::parse,
+        requires = "calibrate"
+    )]
+    samples: Vec<SampleArgument>,
     #[command(flatten)]
     format: FormatArgument,
 }
@@ -58,6 +79,10 @@ pub(crate) fn execute(
     console: &mut CommandOutput<'_>,
 ) -> Result<Exit, CommandFailure> {
     let format = arguments.format.value;
+    if let Some(table) = &arguments.calibrate {
+        return calibrate::calibrate(arguments, table, console);
+    }
+    let colours = known_colours(arguments)?;
     for file in &arguments.files {
         let failed =
             |message: String| CommandFailure::Failed(format, format!("{}: {message}", file.display()));
@@ -66,7 +91,9 @@ pub(crate) fn execute(
         let width = monas_vision::yuv422_of_rgb(rgb.width, &rgb.bytes, &mut pixels);
         let image = Image::new(width, rgb.height, &pixels).map_err(|error| failed(error.to_string()))?;
         let camera = camera(arguments, &image).map_err(|error| failed(error.to_string()))?;
-        let mut vision = Vision::new(objects(arguments.objects));
+        let objects = objects(arguments.objects);
+        let mut vision =
+            colours.map_or_else(|| Vision::new(objects), |it| Vision::starting_from(objects, it));
         let seen = vision.see(&image, &camera).map_err(|error| failed(error.to_string()))?;
         let drawn = overlay_path(file, &arguments.output);
         let bytes = monas_vision::overlay(&image, seen);
@@ -77,6 +104,15 @@ pub(crate) fn execute(
         report(file, &drawn, seen, format, console)?;
     }
     Ok(Exit::Success)
+}
+
+/// The colours of the table that the arguments name.
+fn known_colours(arguments: &VisionArguments) -> Result<Option<ColourModel>, CommandFailure> {
+    let Some(table) = &arguments.colours else { return Ok(None) };
+    match colours::load(table) {
+        (Some(known), _) => Ok(Some(colour_model(&known))),
+        (None, diagnostics) => Err(CommandFailure::Invalid(arguments.format.value, diagnostics)),
+    }
 }
 
 fn objects(set: ObjectSet) -> FieldObjects {
@@ -159,6 +195,7 @@ fn report(
             "lines": lines.collect::<Vec<_>>(),
             "line_points": seen.line_points.len(),
             "border": seen.border,
+            "border_points": seen.border_points.iter().map(|it| [it.position.x, it.position.y]).collect::<Vec<_>>(),
         });
         return Ok(writeln!(console.out, "{found}")?);
     }

@@ -53,5 +53,7 @@ mod top;
 #[cfg(unix)]
 mod topic;
 mod usage;
+#[cfg(feature = "soccer")]
+mod vision;
 #[cfg(all(unix, feature = "zenoh"))]
 mod zenoh;

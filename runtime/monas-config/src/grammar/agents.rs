@@ -143,6 +143,11 @@ fn body() -> ElementRule {
                 "what its cameras deliver: finished sightings, or images",
             )
             .or("sightings"),
+            attribute(
+                "colours",
+                Kind::File,
+                "the colour table with which the calibration of images begins; `monas vision --calibrate` makes one",
+            ),
             attribute("delay", Kind::Duration { least: Duration::ZERO }, "delay of commands, for trials")
                 .or("0s"),
             attribute(

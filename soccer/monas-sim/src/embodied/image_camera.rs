@@ -38,13 +38,13 @@ impl ImageCamera {
         let taken_at = now.as_nanos();
         let state = &world.robots()[robot];
         if !state.phase.is_upright() || !state.on_field {
-            return Ok(Images { taken_at, images: Vec::new() });
+            return Ok(Images { taken_at, ..Images::default() });
         }
         let physics = world.physics();
         let (scene, light) = (scene(world, robot), light(world.time(), world.seed()));
         let images = [0.0, physics.camera_tilt].map(|tilt| self.image(world, robot, tilt, &scene, &light));
         let [upper, lower] = images;
-        Ok(Images { taken_at, images: vec![upper?, lower?] })
+        Ok(Images { taken_at, images: vec![upper?, lower?], ..Images::default() })
     }
 
     fn image(

@@ -7,16 +7,17 @@ use monas_robot::topics as body;
 use nalgebra::Isometry2;
 use narukom::Timestamp;
 
-use crate::image_interpreter::ImageInterpreter;
+use crate::image_interpreter::{ImageInterpreter, Interpretation};
 use crate::perception::{Perception, PerceptionModel};
-use crate::{GameState, convert, topics};
+use crate::{FieldLines, GameState, convert, topics};
 
 /// Filters what the body sees: the ball with its velocity, the robot's pose from goal posts, the
 /// other robots.
 ///
 /// It reads finished sightings, or images from a body that delivers these. An image is interpreted
 /// with the camera pose from the head joints and the torso's inclination at the time it was taken,
-/// which the history of sensor readings has.
+/// which the history of sensor readings has. Images also give the lines and the border of the
+/// field, in the robot's frame at their time.
 ///
 /// Sightings are related to the odometry at the time of the image, which Sensors keeps, and
 /// propagated to the time of publication. A placement by the referee resets the pose and discards
@@ -56,16 +57,20 @@ impl Activity for Vision {
             perception.apply_placement(game, now, odometry);
         }
         perception.feel(blackboard.read(body::SENSORS).map(|sensors| sensors.posture()));
-        see(perception, &mut self.interpreter, blackboard)?;
+        let lines = see(perception, &mut self.interpreter, blackboard)?;
         perception.advance(now, &odometry);
         self.publish(blackboard)?;
+        if let Some(lines) = lines {
+            blackboard.publish(topics::FIELD_LINES, lines)?;
+        }
         Ok(Progress::Done)
     }
 
     fn topics(&self) -> Topics {
         let topics = Topics::declared().reads(body::SENSORS).reads(body::SIGHTINGS).reads(topics::SENSORS);
         let topics = topics.reads(body::IMAGES).reads(topics::GAME_STATE).reads(topics::CALIBRATION);
-        topics.publishes(topics::BALL).publishes(topics::POSE).publishes(topics::ROBOTS)
+        let topics = topics.publishes(topics::BALL).publishes(topics::POSE).publishes(topics::ROBOTS);
+        topics.publishes(topics::FIELD_LINES)
     }
 }
 
@@ -93,13 +98,13 @@ impl Vision {
 }
 
 /// Processes the newest image, or the newest sightings, if they are new, at the time at which the
-/// image was taken.
+/// image was taken. Returns the lines and the border that a new image shows.
 fn see(
     perception: &mut Perception,
     interpreter: &mut ImageInterpreter,
     blackboard: &Blackboard,
-) -> Result<(), BoxError> {
-    let Some(game) = blackboard.read(topics::GAME_STATE) else { return Ok(()) };
+) -> Result<Option<FieldLines>, BoxError> {
+    let Some(game) = blackboard.read(topics::GAME_STATE) else { return Ok(None) };
     let odometry = |taken_at| odometry_at(blackboard, Timestamp::from_nanos(taken_at));
     let is_new = |perception: &Perception, taken_at| taken_at > perception.taken_at();
     let sightings = blackboard.read(body::SIGHTINGS);
@@ -113,9 +118,11 @@ fn see(
         && let Some(odometry) = odometry(images.taken_at)
         && let Some(sensors) = sensors_at(blackboard, images.taken_at)
     {
-        perception.see(&interpreter.interpret(images, sensors)?, game, &odometry);
+        let Interpretation { sightings, lines } = interpreter.interpret(images, sensors)?;
+        perception.see(&sightings, game, &odometry);
+        return Ok(Some(lines));
     }
-    Ok(())
+    Ok(None)
 }
 
 /// The sensor readings of a time: the last that were not later.
@@ -138,7 +145,9 @@ monas::activity!(Vision);
 
 #[cfg(test)]
 mod tests {
-    use monas_robot::{Colour, ObjectKind, Sensors as Felt, Sighting, Sightings};
+    use monas_robot::{Colour, Image, Images, ObjectKind, Sensors as Felt, Sighting, Sightings};
+    use monas_vision::render::{Light, Renderer, Scene};
+    use monas_vision::{Camera, FieldObjects, HeadPose};
 
     use super::*;
     use crate::Ball;
@@ -273,6 +282,49 @@ mod tests {
         let seen = eye.stage.latest(topics::POSE).unwrap();
         assert!((seen.x - 0.1).abs() < 0.05 && (seen.y - 0.5).abs() < 0.05, "{seen:?}");
         assert!(seen.confidence > walked.confidence);
+    }
+
+    /// What a camera shows from the centre of the field towards the yellow goal.
+    fn image(tilt: f64) -> Image {
+        let (width, height, angle_of_view, camera_height) = (320, 240, 0.8343, 0.5);
+        let head = HeadPose { height: camera_height, pitch: tilt, ..HeadPose::default() };
+        let camera = Camera::new(width, height, angle_of_view, &head.robot_from_camera()).unwrap();
+        let objects = FieldObjects::OF_2010;
+        let scene = Scene { markings: Default::default(), objects, ball: None, robots: vec![], variant: 1 };
+        let mut pixels = Vec::new();
+        Renderer::default().draw(&scene, &camera, &Light::default(), 1, &mut pixels).unwrap();
+        let (width, height) = (width as u32, height as u32);
+        Image { width, height, angle_of_view, camera_height, camera_tilt: tilt, pixels }
+    }
+
+    #[test]
+    fn lines_and_border_of_images_are_published_with_their_time() {
+        let mut eye = VisionFixture::new();
+        eye.stage.publish(topics::GAME_STATE, VisionFixture::placed(1, 0.0, 0.0, 0.0));
+        eye.show(0.0, &[]);
+        eye.ball(1.0, 0.0);
+        assert_eq!(eye.stage.latest(topics::FIELD_LINES), None, "sightings have no lines");
+        eye.stage.wait(FRAME);
+        let taken_at = eye.stage.now.as_nanos();
+        eye.stage.publish(body::SENSORS, Felt { measured_at: taken_at, ..Felt::default() });
+        let images = Images { taken_at, images: vec![image(0.1), image(0.6)], ..Images::default() };
+        eye.stage.publish(body::IMAGES, images);
+        eye.stage.run(&mut Sensors);
+        eye.stage.run(&mut eye.vision);
+        let seen = eye.stage.latest(topics::FIELD_LINES).unwrap();
+        assert_eq!(seen.taken_at, taken_at);
+        // The goal line, 3 m ahead, and the front of the goal area, 2.4 m ahead, run across.
+        for ahead in [2.4, 3.0] {
+            let is_it = |line: &&crate::FieldLine| {
+                (line.x1 - ahead).abs() < 0.12
+                    && (line.x2 - ahead).abs() < 0.12
+                    && (line.y1 - line.y2).abs() > 0.8
+            };
+            assert_eq!(seen.lines.iter().filter(is_it).count(), 1, "{ahead} m: {:?}", seen.lines);
+        }
+        // The carpet ends 3.7 m ahead.
+        assert!((8..=32).contains(&seen.border.len()), "{:?}", seen.border);
+        assert!(seen.border.iter().all(|point| (point.x - 3.7).abs() < 0.25), "{:?}", seen.border);
     }
 
     #[test]

@@ -3,6 +3,7 @@
 use super::Look;
 use crate::Seen;
 use crate::colour::ColourClass;
+use crate::seen::GroundPoint;
 
 /// Cells between two columns that are scanned.
 const SPACING: usize = 4;
@@ -53,6 +54,24 @@ impl BorderScan {
         let step = map.step as f64;
         seen.border
             .extend(self.hull.iter().map(|&(x, y)| [(f64::from(x) + 0.5) * step, f64::from(y) * step]));
+        let columns = self.raw.iter().enumerate();
+        seen.border_points.extend(columns.filter_map(|(index, row)| self.point(look, index, (*row)?)));
+    }
+
+    /// The point of the border in a scanned column, where carpet begins at a row; none if it leaves
+    /// the image there, or something hides its end.
+    fn point(&self, look: &Look<'_>, index: usize, row: usize) -> Option<GroundPoint> {
+        /// Cells between the end of the carpet and the hull.
+        const TOLERANCE: f32 = 1.5;
+        let step = look.map.step as f64;
+        let column = index * SPACING + SPACING / 2;
+        if row < 2 || (row as f32 - self.row(column)).abs() > TOLERANCE {
+            return None;
+        }
+        // Of each cell one row of pixels is classified: its first.
+        let pixel = [(column as f64 + 0.5) * step, (row as f64 - 0.5) * step + 0.5];
+        let position = look.camera.point_at_height(pixel[0], pixel[1], 0.0)?;
+        Some(GroundPoint { pixel, position })
     }
 
     /// The upper convex hull of the points, each of which is first the median of three, so that a

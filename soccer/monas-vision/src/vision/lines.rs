@@ -4,7 +4,7 @@ use super::Look;
 use super::border::BorderScan;
 use crate::Seen;
 use crate::colour::ColourClass;
-use crate::seen::{LinePoint, LineSegment, PixelBox, Sight};
+use crate::seen::{GroundPoint, LineSegment, PixelBox, Sight};
 
 /// Pixels between scanned columns and between scanned rows, in an image of 640 columns.
 const COLUMN_SPACING: usize = 6;
@@ -22,8 +22,8 @@ pub(crate) struct LineScan {
     profile: Vec<u8>,
     chains: Vec<PointChain>,
     /// Points of chains, each with the index of the next of its chain.
-    linked: Vec<(LinePoint, usize)>,
-    run: Vec<LinePoint>,
+    linked: Vec<(GroundPoint, usize)>,
+    run: Vec<GroundPoint>,
 }
 
 /// Line points of neighbouring scans that follow each other.
@@ -140,8 +140,8 @@ impl LineScan {
     }
 
     /// Appends a point to the chain that leads to it, or begins one.
-    fn link(&mut self, point: LinePoint, axis: ScanAxis, scan: usize, spacing: usize) {
-        let across = |point: &LinePoint| point.pixel[usize::from(axis == ScanAxis::Column)];
+    fn link(&mut self, point: GroundPoint, axis: ScanAxis, scan: usize, spacing: usize) {
+        let across = |point: &GroundPoint| point.pixel[usize::from(axis == ScanAxis::Column)];
         let index = self.linked.len();
         let linked = &self.linked;
         let error = |chain: &PointChain| {
@@ -187,7 +187,7 @@ impl LineScan {
     }
 }
 
-fn split_run(run: &[LinePoint], lines: &mut Vec<LineSegment>) {
+fn split_run(run: &[GroundPoint], lines: &mut Vec<LineSegment>) {
     /// Greatest distance of a point from its straight part, pixels.
     const STRAIGHT: f64 = 2.2;
     let [first, .., last] = run else { return };
@@ -224,7 +224,7 @@ fn line_point(
     begin: f64,
     finish: f64,
     (start, end): (usize, usize),
-) -> Option<LinePoint> {
+) -> Option<GroundPoint> {
     let middle = (begin + finish) / 2.0;
     let pixel_of = |along: f64| match axis {
         ScanAxis::Column => [pixel(0).0 as f64 + 0.5, along + 0.5],
@@ -255,20 +255,20 @@ fn line_point(
     let (x, y) = pixel(middle as usize);
     let class = look.table.class(look.image.yuv(x, y));
     let is_pale = class == ColourClass::White || (finish - begin < 5.0 && is_colourless(class));
-    (carpet_before && carpet_after && is_pale).then_some(LinePoint { pixel: centre, position })
+    (carpet_before && carpet_after && is_pale).then_some(GroundPoint { pixel: centre, position })
 }
 
 fn is_colourless(class: ColourClass) -> bool {
     matches!(class, ColourClass::White | ColourClass::Other | ColourClass::Green)
 }
 
-fn is_on_field(look: &Look<'_>, border: &BorderScan, point: &LinePoint) -> bool {
+fn is_on_field(look: &Look<'_>, border: &BorderScan, point: &GroundPoint) -> bool {
     let step = look.map.step as f64;
     point.pixel[1] / step > f64::from(border.row((point.pixel[0] / step) as usize)) + 0.5
 }
 
 /// Whether a point belongs to a ball, a post or a robot.
-fn is_on_object(seen: &Seen, point: &LinePoint) -> bool {
+fn is_on_object(seen: &Seen, point: &GroundPoint) -> bool {
     let [x, y] = point.pixel;
     let holds = |area: &PixelBox, margin: f64| {
         (area.left - margin..area.right + margin).contains(&x)

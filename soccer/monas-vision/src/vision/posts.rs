@@ -98,18 +98,19 @@ fn post(
 ) -> Option<Sight> {
     let (map, step) = (look.map, look.map.step as f64);
     let middle = (left + right) / 2;
-    let third = (right - left) / 3;
-    let has_colour = |row: usize| {
-        let own = [middle - third.min(middle), middle, middle + third];
-        2 * own.iter().filter(|&&column| map.at(column, row) == class).count() > 3
-    };
     let start = scan_rows(look, border, class, middle).nth(ROWS / 2)?;
-    let foot = last_row(start, map.rows, &has_colour);
-    let top = (0..start).rev().take_while(|&row| has_colour(row)).last().unwrap_or(start);
+    let bar = Bar::new(look, class, start, left, right);
+    let foot = bar.last_row(look, start..map.rows);
+    let top = bar.last_row(look, (0..start).rev());
+    let foot_middle = bar.middle_at(foot);
     let width = (right - left) as f64 * step;
-    let centre = (left + right) as f64 / 2.0 * step;
+    let centre = foot_middle * step;
     let bottom = (foot + 1) as f64 * step;
     let is_cut = foot + 2 >= map.rows;
+    // What is cut on two sides has neither foot nor width.
+    if is_cut && (left == 0 || right >= map.columns) {
+        return None;
+    }
     let diameter = 2.0 * look.objects.post_radius;
     let expected = diameter * look.camera.scale(centre, bottom, 0.0);
     if expected <= 0.0 {
@@ -129,8 +130,9 @@ fn post(
                 return None;
             }
             // The foot is on the field, with carpet below it.
-            let below = map.shares(left as f32, foot as f32 + 1.0, right as f32, foot as f32 + 6.0);
-            if below.green < 0.25 || (foot as f32) + 4.0 < border.row(middle) {
+            let [from, to] = [-bar.half, bar.half].map(|aside| (foot_middle + aside) as f32);
+            let below = map.shares(from, foot as f32 + 1.0, to, foot as f32 + 6.0);
+            if below.green < 0.25 || (foot as f32) + 4.0 < border.row(foot_middle as usize) {
                 return None;
             }
             let near = look.camera.point_at_height(centre, bottom, 0.0)?;
@@ -152,7 +154,7 @@ fn post(
     // Beside a post there is something else, unlike in front of a wall; above the field this may be
     // white as well.
     let from = if paint == GoalPaint::White { border.row(middle).max(0.0) as usize } else { top };
-    if !stands_alone(look, class, left, right, from, start.max(foot)) {
+    if !bar.stands_alone(look, from, start.max(foot)) {
         return None;
     }
     let area =
@@ -160,33 +162,60 @@ fn post(
     Some(Sight::new(position, area))
 }
 
-/// The last row of the colour below a row, with gaps of two rows.
-fn last_row(start: usize, rows: usize, has_colour: &impl Fn(usize) -> bool) -> usize {
-    let (mut last, mut row) = (start, start);
-    while row < rows && row <= last + 3 {
-        if has_colour(row) {
-            last = row;
-        }
-        row += 1;
-    }
-    last
+/// A bar of one colour that is upright on the ground, in cells.
+#[derive(Clone, Copy, Debug)]
+struct Bar {
+    class: ColourClass,
+    /// A row that it crosses, and its middle there.
+    row: usize,
+    middle: f64,
+    /// Half of its width.
+    half: f64,
+    /// Columns from one row to the next: a camera that is rolled sees an inclined bar.
+    slope: f64,
 }
 
-/// Whether the columns beside a bar have another class in most rows.
-fn stands_alone(
-    look: &Look<'_>,
-    class: ColourClass,
-    left: usize,
-    right: usize,
-    top: usize,
-    bottom: usize,
-) -> bool {
-    let away = 2 + (right - left) / 2;
-    let rows = bottom.saturating_sub(top).max(1);
-    let is_free = |column: Option<usize>| {
-        let Some(column) = column.filter(|&column| column < look.map.columns) else { return true };
-        let same = (top..bottom).filter(|&row| look.map.at(column, row) == class).count();
-        2 * same <= rows
-    };
-    is_free(left.checked_sub(away)) && is_free(Some(right + away))
+impl Bar {
+    fn new(look: &Look<'_>, class: ColourClass, row: usize, left: usize, right: usize) -> Bar {
+        let step = look.map.step as f64;
+        let middle = (left + right) as f64 / 2.0;
+        let slope = look.camera.slope_of_vertical(middle * step, row as f64 * step);
+        Bar { class, row, middle, half: (right - left) as f64 / 2.0, slope }
+    }
+
+    fn middle_at(&self, row: usize) -> f64 {
+        self.middle + self.slope * (row as f64 - self.row as f64)
+    }
+
+    /// The class of a cell, given by its distance from the middle.
+    fn class_at(&self, look: &Look<'_>, aside: f64, row: usize) -> ColourClass {
+        let column = (self.middle_at(row) + aside).floor();
+        if column < 0.0 { ColourClass::Other } else { look.map.at(column as usize, row) }
+    }
+
+    /// The last of the rows that has the colour, with gaps of two rows.
+    fn last_row(&self, look: &Look<'_>, rows: impl Iterator<Item = usize>) -> usize {
+        let third = self.half * 2.0 / 3.0;
+        let mut last = self.row;
+        for row in rows {
+            if row.abs_diff(last) > 3 {
+                break;
+            }
+            let own = [-third, 0.0, third].map(|aside| self.class_at(look, aside, row));
+            if own.iter().filter(|class| **class == self.class).count() >= 2 {
+                last = row;
+            }
+        }
+        last
+    }
+
+    /// Whether what is beside it has another class in most rows.
+    fn stands_alone(&self, look: &Look<'_>, top: usize, bottom: usize) -> bool {
+        let away = 2.0 * self.half + 2.0;
+        let rows = bottom.saturating_sub(top).max(1);
+        let is_free = |aside: f64| {
+            2 * (top..bottom).filter(|&row| self.class_at(look, aside, row) == self.class).count() <= rows
+        };
+        is_free(-away) && is_free(away)
+    }
 }

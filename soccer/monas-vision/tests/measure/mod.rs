@@ -3,11 +3,12 @@
 //! A robot walks over the field, turns its head, and looks with the upper or the lower camera. The
 //! pose that vision receives has errors of joints and inertial unit. The light changes from
 //! sequence to sequence, and in some from image to image.
+#![allow(dead_code, reason = "not all programs with this module use all of it")]
 
 use std::fmt;
 
 use monas_vision::render::{FieldMarkings, Light, Renderer, RobotFigure, Scene};
-use monas_vision::{Camera, FieldObjects, HeadPose, Jersey, Seen, Sight, Vision};
+use monas_vision::{Camera, FieldObjects, HeadPose, Jersey, LineSegment, Seen, Sight, Vision};
 use nalgebra::{Isometry2, Isometry3, Point2, Point3, UnitQuaternion, Vector2, Vector3};
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg64;
@@ -22,23 +23,31 @@ pub(crate) const BALL_RANGE: f64 = 3.0;
 pub(crate) const POST_RANGE: f64 = 4.5;
 pub(crate) const ROBOT_RANGE: f64 = 3.0;
 pub(crate) const LINE_RANGE: f64 = 2.5;
+pub(crate) const BORDER_RANGE: f64 = 4.0;
 
 /// A light, from image to image of a sequence (its progress is from 0 to 1).
 pub(crate) struct Condition {
+    /// Chooses the random numbers of its sequences.
+    pub(crate) number: u64,
     pub(crate) name: &'static str,
     pub(crate) light: fn(f64) -> Light,
 }
 
 /// The lights under which vision is measured.
 pub(crate) const CONDITIONS: [Condition; 8] = [
-    Condition { name: "even", light: |_| camera_light() },
-    Condition { name: "dim", light: |_| Light { exposure: 0.45, noise: 6.0, ..camera_light() } },
-    Condition { name: "bright", light: |_| Light { exposure: 1.6, ..camera_light() } },
-    Condition { name: "warm", light: |_| Light { tint: [1.12, 1.0, 0.72], ..camera_light() } },
-    Condition { name: "cold", light: |_| Light { tint: [0.78, 1.0, 1.15], ..camera_light() } },
-    Condition { name: "window", light: |_| Light { slope: 0.16, direction: 0.9, ..camera_light() } },
-    Condition { name: "blurred", light: |_| Light { blur: 1.6, noise: 7.0, ..camera_light() } },
+    Condition { number: 0, name: "even", light: |_| camera_light() },
+    Condition { number: 1, name: "dim", light: |_| Light { exposure: 0.45, noise: 6.0, ..camera_light() } },
+    Condition { number: 2, name: "bright", light: |_| Light { exposure: 1.6, ..camera_light() } },
+    Condition { number: 3, name: "warm", light: |_| Light { tint: [1.12, 1.0, 0.72], ..camera_light() } },
+    Condition { number: 4, name: "cold", light: |_| Light { tint: [0.78, 1.0, 1.15], ..camera_light() } },
     Condition {
+        number: 5,
+        name: "window",
+        light: |_| Light { slope: 0.16, direction: 0.9, ..camera_light() },
+    },
+    Condition { number: 6, name: "blurred", light: |_| Light { blur: 1.6, noise: 7.0, ..camera_light() } },
+    Condition {
+        number: 7,
         name: "changing",
         light: |progress| {
             let (sin, cos) = libm::sincos(std::f64::consts::TAU * 2.0 * progress);
@@ -52,6 +61,20 @@ pub(crate) const CONDITIONS: [Condition; 8] = [
         },
     },
 ];
+
+/// Light in which orange is nearly red and yellow nearly white: a colour table helps.
+pub(crate) const LAMPS: Condition =
+    Condition { number: 8, name: "lamps", light: |_| Light { tint: [1.2, 1.0, 0.4], ..camera_light() } };
+
+/// From that light to the one of a cold day.
+pub(crate) const LAMPS_TO_DAY: Condition = Condition {
+    number: 9,
+    name: "lamps, then day",
+    light: |progress| {
+        let part = progress as f32;
+        Light { tint: [1.2 - 0.35 * part, 1.0, 0.4 + 0.7 * part], ..camera_light() }
+    },
+};
 
 /// The light of a hall, and the noise and blur of a camera.
 fn camera_light() -> Light {
@@ -114,6 +137,16 @@ pub(crate) struct Measures {
     pub(crate) lines: Tally,
     /// Columns in which the border is within a fortieth of the height of the image.
     pub(crate) border: Tally,
+    /// Straight parts of lines: the points every 5 cm that one covers, and parts that are on no
+    /// line.
+    pub(crate) segments: Tally,
+    /// The number of straight parts that are on a line; their distance from it, m, and their angle
+    /// to it, rad.
+    pub(crate) right_segments: u32,
+    pub(crate) segment_offsets: Vec<f64>,
+    pub(crate) segment_angles: Vec<f64>,
+    /// Points of the border: right ones, with the errors of distance, and wrong ones.
+    pub(crate) border_points: Tally,
     /// Jerseys of the robots that were seen, and how many had the wrong colour.
     pub(crate) jerseys: u32,
     pub(crate) wrong_jerseys: u32,
@@ -127,8 +160,26 @@ impl Measures {
         self.robots.add(&other.robots);
         self.lines.add(&other.lines);
         self.border.add(&other.border);
+        self.segments.add(&other.segments);
+        self.right_segments += other.right_segments;
+        self.segment_offsets.extend(&other.segment_offsets);
+        self.segment_angles.extend(&other.segment_angles);
+        self.border_points.add(&other.border_points);
         self.jerseys += other.jerseys;
         self.wrong_jerseys += other.wrong_jerseys;
+    }
+}
+
+impl Measures {
+    /// The part of the straight parts that are on no line.
+    pub(crate) fn false_segments(&self) -> f64 {
+        f64::from(self.segments.wrong) / f64::from((self.right_segments + self.segments.wrong).max(1))
+    }
+
+    /// The part of the points of the border that are not on it.
+    pub(crate) fn false_border_points(&self) -> f64 {
+        let points = &self.border_points;
+        f64::from(points.wrong) / f64::from((points.found + points.wrong).max(1))
     }
 }
 
@@ -147,13 +198,19 @@ impl fmt::Display for Measures {
         };
         write!(
             f,
-            "{} |{} |{} |{:>6.1}{:>6.1} |{:>6.1}",
+            "{} |{} |{} |{:>6.1}{:>6.1} |{:>6.1} |{:>6.1}{:>6.1}{:>5.1}{:>5.1} |{:>6.1}{:>6.1}",
             object(&self.ball),
             object(&self.posts),
             object(&self.robots),
             100.0 * self.lines.recall(),
             100.0 * f64::from(self.lines.wrong) / f64::from((self.lines.found + self.lines.wrong).max(1)),
             100.0 * self.border.recall(),
+            100.0 * self.segments.recall(),
+            100.0 * self.false_segments(),
+            100.0 * mean(&self.segment_offsets),
+            mean(&self.segment_angles).to_degrees(),
+            100.0 * mean(&self.border_points.distance_errors),
+            100.0 * self.false_border_points(),
         )
     }
 }
@@ -161,7 +218,7 @@ impl fmt::Display for Measures {
 /// One sequence: 640 by 480 pixels unless `width` is less.
 pub(crate) struct Sequence {
     pub(crate) objects: FieldObjects,
-    pub(crate) condition: usize,
+    pub(crate) condition: &'static Condition,
     pub(crate) images: u32,
     pub(crate) width: usize,
     pub(crate) seed: u64,
@@ -169,14 +226,18 @@ pub(crate) struct Sequence {
 
 impl Sequence {
     pub(crate) fn measure(&self) -> Measures {
-        let mut random = Random(Pcg64::seed_from_u64(self.seed * 100 + self.condition as u64));
-        let mut vision = Vision::new(self.objects);
+        self.measure_with(Vision::new(self.objects))
+    }
+
+    /// As [`measure`](Sequence::measure), with a vision that may know colours.
+    pub(crate) fn measure_with(&self, mut vision: Vision) -> Measures {
+        let mut random = Random(Pcg64::seed_from_u64(self.seed * 100 + self.condition.number));
         let (mut renderer, mut pixels) = (Renderer::default(), Vec::new());
         let mut measures = Measures { images: self.images, ..Measures::default() };
         for number in 0..self.images {
             let view = View::choose(&mut random, self);
             let progress = f64::from(number) / f64::from(self.images);
-            let light = (CONDITIONS[self.condition].light)(progress);
+            let light = (self.condition.light)(progress);
             let camera = view.camera(&view.head, self.width, true);
             let seed = self.seed * 1000 + u64::from(number);
             let image = renderer.draw(&view.scene, &camera, &light, seed, &mut pixels).unwrap();
@@ -304,6 +365,8 @@ impl View {
         self.compare_robots(seen, camera, measures);
         self.compare_lines(seen, camera, &mut measures.lines);
         self.compare_border(seen, camera, &mut measures.border);
+        self.compare_segments(seen, camera, measures);
+        self.compare_border_points(seen, &mut measures.border_points);
     }
 
     fn compare_ball(&self, seen: &Seen, camera: &Camera, tally: &mut Tally) {
@@ -365,18 +428,86 @@ impl View {
         tally.wrong += seen.robots.iter().filter(|robot| !is_true(&robot.sight)).count() as u32;
     }
 
-    fn compare_lines(&self, seen: &Seen, camera: &Camera, tally: &mut Tally) {
-        for point in line_points(&self.scene.markings) {
-            let own = self.to_robot(point);
-            let at = Point3::new(point.x, point.y, 0.0);
-            if own.coords.norm() > LINE_RANGE || !within(camera, at, 0.05) || self.is_hidden(point, None, 0.1)
-            {
-                continue;
-            }
+    /// The points of lines that are in view and in range, in the frame of the robot.
+    fn shown_line_points(&self, camera: &Camera) -> Vec<Point2<f64>> {
+        let is_shown = |point: &Point2<f64>| {
             let near_ball = |ball: Point2<f64>| (ball - point).norm() < 0.2;
-            if self.scene.ball.is_some_and(near_ball) {
+            self.to_robot(*point).coords.norm() <= LINE_RANGE
+                && within(camera, Point3::new(point.x, point.y, 0.0), 0.05)
+                && !self.is_hidden(*point, None, 0.1)
+                && !self.scene.ball.is_some_and(near_ball)
+        };
+        line_points(&self.scene.markings).filter(is_shown).map(|point| self.to_robot(point)).collect()
+    }
+
+    /// Straight parts of lines: which points of lines they cover, and where and how they lie.
+    fn compare_segments(&self, seen: &Seen, camera: &Camera, measures: &mut Measures) {
+        /// Greatest angle to the line, rad.
+        const MOST_ANGLE: f64 = 0.2;
+        let near: Vec<[Point2<f64>; 2]> = seen
+            .lines
+            .iter()
+            .map(|line| line.ends.map(|end| end.position))
+            .filter(|ends| ends.iter().all(|end| end.coords.norm() < LINE_RANGE))
+            .collect();
+        for own in self.shown_line_points(camera) {
+            measures.segments.shown += 1;
+            let tolerance = 0.08 + 0.03 * own.coords.norm();
+            let is_covered = |line: &LineSegment| {
+                let [a, b] = line.ends.map(|end| end.position);
+                let part = ((own - a).dot(&(b - a)) / (b - a).norm_squared()).clamp(0.0, 1.0);
+                (a + (b - a) * part - own).norm() < tolerance
+            };
+            measures.segments.found += u32::from(seen.lines.iter().any(is_covered));
+        }
+        for [a, b] in near {
+            let middle = nalgebra::center(&a, &b);
+            let truth = strokes(&self.scene.markings).into_iter().map(|stroke| {
+                let places =
+                    [0.1, 0.3, 0.5, 0.7, 0.9].map(|part| self.field_from_robot * (a + (b - a) * part));
+                let offset = places.iter().map(|place| stroke.distance(place)).sum::<f64>() / 5.0;
+                let along = stroke.direction(&(self.field_from_robot * middle));
+                let way = self.field_from_robot.rotation * (b - a).normalize();
+                (offset, libm::asin(way.perp(&along).abs().min(1.0)))
+            });
+            let (offset, angle) = truth.min_by(|a, b| a.0.total_cmp(&b.0)).unwrap();
+            let tolerance = 0.06 + 0.04 * middle.coords.norm();
+            if offset > tolerance || angle > MOST_ANGLE {
+                measures.segments.wrong += 1;
                 continue;
             }
+            measures.right_segments += 1;
+            measures.segment_offsets.push(offset);
+            measures.segment_angles.push(angle);
+        }
+    }
+
+    /// The distance of the points of the border, along their direction.
+    fn compare_border_points(&self, seen: &Seen, tally: &mut Tally) {
+        let field = &self.scene.markings;
+        let (length, width) = (field.length / 2.0 + field.border, field.width / 2.0 + field.border);
+        for point in seen.border_points.iter().map(|point| point.position) {
+            let distance = point.coords.norm();
+            let origin = Point2::from(self.field_from_robot.translation.vector);
+            let way = self.field_from_robot.rotation * point.coords.normalize();
+            let until =
+                |at: f64, way: f64, end: f64| if way > 0.0 { (end - at) / way } else { (-end - at) / way };
+            let truth = until(origin.x, way.x, length).min(until(origin.y, way.y, width));
+            let error = (distance - truth).abs() / truth;
+            if truth > BORDER_RANGE {
+                continue;
+            }
+            if error > 0.2 {
+                tally.wrong += 1;
+            } else {
+                tally.found += 1;
+                tally.distance_errors.push(error);
+            }
+        }
+    }
+
+    fn compare_lines(&self, seen: &Seen, camera: &Camera, tally: &mut Tally) {
+        for own in self.shown_line_points(camera) {
             tally.shown += 1;
             let tolerance = 0.06 + 0.03 * own.coords.norm();
             let is_found = seen.line_points.iter().any(|found| (found.position - own).norm() < tolerance);
@@ -422,12 +553,44 @@ fn is_near(sight: &Sight, truth: &Point2<f64>, part: f64) -> bool {
     (sight.position() - truth).norm() < (part * truth.coords.norm()).max(0.12)
 }
 
-/// Points every 5 cm along the lines, without those where lines meet.
-fn line_points(field: &FieldMarkings) -> impl Iterator<Item = Point2<f64>> {
+/// A line of the field, in its frame.
+enum Stroke {
+    Straight(Point2<f64>, Point2<f64>),
+    /// The centre circle, with its radius.
+    Circle(f64),
+}
+
+impl Stroke {
+    fn distance(&self, point: &Point2<f64>) -> f64 {
+        match self {
+            Stroke::Straight(a, b) => {
+                let part = ((point - a).dot(&(b - a)) / (b - a).norm_squared()).clamp(0.0, 1.0);
+                (a + (b - a) * part - point).norm()
+            }
+            Stroke::Circle(radius) => (point.coords.norm() - radius).abs(),
+        }
+    }
+
+    /// The direction of the line at a point of it.
+    fn direction(&self, point: &Point2<f64>) -> Vector2<f64> {
+        match self {
+            Stroke::Straight(a, b) => (b - a).normalize(),
+            Stroke::Circle(_) => Vector2::new(-point.y, point.x).normalize(),
+        }
+    }
+}
+
+/// The lines of the field and the circle.
+fn strokes(field: &FieldMarkings) -> Vec<Stroke> {
+    let straight = straight_strokes(field)
+        .map(|[from, to]| Stroke::Straight(Point2::new(from.0, from.1), Point2::new(to.0, to.1)));
+    straight.into_iter().chain([Stroke::Circle(field.centre_circle_radius)]).collect()
+}
+
+fn straight_strokes(field: &FieldMarkings) -> [[(f64, f64); 2]; 11] {
     let (length, width) = (field.length / 2.0, field.width / 2.0);
     let (front, side) = (length - field.goal_area_depth, field.goal_area_width / 2.0);
-    let radius = field.centre_circle_radius;
-    let strokes = [
+    [
         [(-length, width), (length, width)],
         [(-length, -width), (length, -width)],
         [(-length, -width), (-length, width)],
@@ -439,8 +602,13 @@ fn line_points(field: &FieldMarkings) -> impl Iterator<Item = Point2<f64>> {
         [(front, -side), (length, -side)],
         [(-front, side), (-length, side)],
         [(-front, -side), (-length, -side)],
-    ];
-    let straight = strokes.into_iter().flat_map(|[from, to]| {
+    ]
+}
+
+/// Points every 5 cm along the lines, without those where lines meet.
+fn line_points(field: &FieldMarkings) -> impl Iterator<Item = Point2<f64>> {
+    let radius = field.centre_circle_radius;
+    let straight = straight_strokes(field).into_iter().flat_map(|[from, to]| {
         let (from, to) = (Point2::new(from.0, from.1), Point2::new(to.0, to.1));
         let count = ((to - from).norm() / 0.05) as usize;
         (0..=count).map(move |k| from + (to - from) * (k as f64 / count as f64))

@@ -9,19 +9,27 @@ use zune_jpeg::zune_core::bytestream::ZCursor;
 use zune_jpeg::zune_core::colorspace::ColorSpace;
 use zune_jpeg::zune_core::options::DecoderOptions;
 
+use crate::png_image::encode_png;
+
 /// The largest side of an image, pixels: what vision accepts.
 const LARGEST: usize = 4096;
 
 /// An image with three bytes for each pixel.
-pub(super) struct RgbImage {
-    pub(super) width: usize,
-    pub(super) height: usize,
-    pub(super) bytes: Vec<u8>,
+pub struct RgbImage {
+    /// Pixels of a row.
+    pub width: usize,
+    /// The number of rows.
+    pub height: usize,
+    /// Red, green and blue of each pixel, row by row from the top.
+    pub bytes: Vec<u8>,
 }
 
 impl RgbImage {
     /// Reads a file, whose content decides on its format.
-    pub(super) fn read(file: &Path) -> Result<RgbImage, String> {
+    ///
+    /// # Errors
+    /// The file cannot be read, or holds no PNG or JPEG of a possible size; the reason.
+    pub fn read(file: &Path) -> Result<RgbImage, String> {
         let content = std::fs::read(file).map_err(|error| error.to_string())?;
         match &content[..content.len().min(8)] {
             [0x89, b'P', b'N', b'G', ..] => RgbImage::from_png(&content),
@@ -68,8 +76,11 @@ impl RgbImage {
     }
 
     /// Writes a PNG.
-    pub(super) fn write(&self, file: &Path) -> Result<(), String> {
-        let content = monas_scene::encode_png(self.width, self.height, &self.bytes)?;
+    ///
+    /// # Errors
+    /// The file cannot be written; the reason.
+    pub fn write(&self, file: &Path) -> Result<(), String> {
+        let content = encode_png(self.width, self.height, &self.bytes)?;
         monas_files::write(file, &content).map_err(|error| error.to_string())
     }
 }
