@@ -16,7 +16,7 @@ use std::fs;
 use std::path::Path;
 use std::process::ExitCode;
 
-use behaviour_patch::{BehaviourPatch, Edit, Way};
+use behaviour_patch::{BehaviourPatch, Edit, Methodology};
 use bench::{Bench, Finder};
 
 /// The folder of the faults, relative to the workspace.
@@ -40,7 +40,7 @@ pub(crate) enum Task<'a> {
 }
 
 /// What finds a fault in each way; none where it cannot be made.
-type Row<'a> = (&'a BehaviourPatch, BTreeMap<Way, Option<Finder>>);
+type Row<'a> = (&'a BehaviourPatch, BTreeMap<Methodology, Option<Finder>>);
 
 /// Injects the faults, one at a time.
 pub(crate) fn run(root: &Path, task: Task<'_>) -> Result<ExitCode, Box<dyn Error>> {
@@ -54,7 +54,7 @@ pub(crate) fn run(root: &Path, task: Task<'_>) -> Result<ExitCode, Box<dyn Error
         }
     }
     let bench = Bench::build(root)?;
-    for (change, way) in changes.iter().flat_map(|change| Way::ALL.map(|way| (change, way))) {
+    for (change, way) in changes.iter().flat_map(|change| Methodology::ALL.map(|way| (change, way))) {
         let seconds = bench.adopt(way, change)?.as_secs_f64();
         println!("{:<24} {:<8} runs {seconds:.1} s after the edit, and passes", change.name, way.name());
     }
@@ -98,13 +98,13 @@ pub(crate) fn run(root: &Path, task: Task<'_>) -> Result<ExitCode, Box<dyn Error
 /// The edits of each change request in the sources of each way, without tests.
 fn change_table(changes: &[BehaviourPatch]) -> String {
     let mut text = String::new();
-    line(&mut text, "lines / places / files changed", Way::ALL.map(|way| way.name().to_owned()));
+    line(&mut text, "lines / places / files changed", Methodology::ALL.map(|way| way.name().to_owned()));
     for change in changes {
         let extent = |way| {
             let (lines, places, files) = change.extent(way);
             format!("{lines} / {places} / {files}")
         };
-        line(&mut text, &change.class, Way::ALL.map(extent));
+        line(&mut text, &change.class, Methodology::ALL.map(extent));
     }
     text
 }
@@ -112,16 +112,17 @@ fn change_table(changes: &[BehaviourPatch]) -> String {
 /// The table of all faults, and how many each stage has found.
 fn table(rows: &[Row<'_>]) -> String {
     let mut text = String::new();
-    line(&mut text, "fault", Way::ALL.map(|way| way.name().to_owned()));
+    line(&mut text, "fault", Methodology::ALL.map(|way| way.name().to_owned()));
     for (fault, found) in rows {
         let finder = |way| found.get(&way).copied().flatten().map_or("-", Finder::name).to_owned();
-        line(&mut text, &fault.class, Way::ALL.map(finder));
+        line(&mut text, &fault.class, Methodology::ALL.map(finder));
     }
     text.push('\n');
     let count = |matches: &dyn Fn(Option<Finder>) -> bool| {
-        let of =
-            |way: Way| rows.iter().filter(|(_, found)| matches(found.get(&way).copied().flatten())).count();
-        Way::ALL.map(|way| of(way).to_string())
+        let of = |way: Methodology| {
+            rows.iter().filter(|(_, found)| matches(found.get(&way).copied().flatten())).count()
+        };
+        Methodology::ALL.map(|way| of(way).to_string())
     };
     line(&mut text, "faults that can be made", count(&|finder| finder.is_some()));
     for finder in Finder::ALL {
@@ -149,7 +150,7 @@ mod tests {
         let root = crate::root();
         let faults = faults();
         assert!(faults.len() >= 12, "{} faults", faults.len());
-        for (fault, way) in faults.iter().flat_map(|fault| Way::ALL.map(|way| (fault, way))) {
+        for (fault, way) in faults.iter().flat_map(|fault| Methodology::ALL.map(|way| (fault, way))) {
             let Edit::Diffs(_) = &fault.edits[&way] else { continue };
             let read = |file: &str| Ok(fs::read_to_string(root.join(file))?);
             let changed = fault.apply(way, read).unwrap_or_else(|error| panic!("{error}"));
@@ -165,7 +166,7 @@ mod tests {
         let root = crate::root();
         let changes = behaviour_patch::read(&root.join(CHANGES)).unwrap();
         assert!(changes.len() >= 3);
-        for (change, way) in changes.iter().flat_map(|change| Way::ALL.map(|way| (change, way))) {
+        for (change, way) in changes.iter().flat_map(|change| Methodology::ALL.map(|way| (change, way))) {
             let read = |file: &str| Ok(fs::read_to_string(root.join(file)).unwrap_or_default());
             let changed = change.apply(way, read).unwrap_or_else(|error| panic!("{error}"));
             assert!(changed.keys().any(|file| !way.owns(file)), "{} has no test", change.name);
@@ -190,7 +191,8 @@ mod tests {
     fn the_sums_are_those_of_the_table() {
         let fault = |class: &str| BehaviourPatch { class: class.into(), ..BehaviourPatch::default() };
         let (first, second) = (fault("one"), fault("two"));
-        let found = |finder| BTreeMap::from([(Way::Direct, None), (Way::Aseme, Some(finder))]);
+        let found =
+            |finder| BTreeMap::from([(Methodology::Direct, None), (Methodology::Aseme, Some(finder))]);
         let text = table(&[(&first, found(Finder::Tests)), (&second, found(Finder::Check))]);
         let lines: Vec<Vec<&str>> = text.lines().map(|line| line.split_whitespace().collect()).collect();
         assert_eq!(lines[1], ["one", "-", "-", "tests"]);

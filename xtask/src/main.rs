@@ -5,8 +5,8 @@
 //! - `bodies` links each crate of a body under `robots/` into the command `monas`.
 //! - `faults` injects classic faults into the engine, one at a time, and requires that the tests
 //!   detect each.
-//! - `eval-faults` injects the same faults of behaviour into the three ways of `monas eval` and records
-//!   what finds each first: compiler, check of the model, tests or matches.
+//! - `eval-faults` injects the same faults of behaviour into the three ways of `monas eval` and
+//!   records what finds each first: compiler, check of the model, tests or matches.
 //! - `project` creates a project with `monas new`, builds, tests and runs it, and extends it.
 //! - `season` plays a season and writes its golden table; with `--check` it compares.
 

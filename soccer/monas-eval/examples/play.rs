@@ -1,9 +1,8 @@
 //! Plays matches of one methodology, and prints the sums that `monas eval` compares, one `name
 //! value` a line.
 //!
-//! `cargo run --release -p monas-eval --example play -- config/evaluation/agents.xml 1 10 600` plays
-//! the match file with the seeds 1 to 10 for 600 s each. With `direct` after them, blue is built
-//! directly on the robots.
+//! `play config/evaluation/agents.xml 1 10 600` plays the match file with the seeds 1 to 10 for
+//! 600 s each. With `direct` after them, blue is built directly on the robots.
 
 use std::path::Path;
 use std::process::ExitCode;

@@ -207,7 +207,7 @@ impl Case {
     }
 }
 
-/// Scenarios that are no single decision: `play` in each methodology's tests has their counterparts.
+/// Scenarios that are no single decision: `play` in the tests of each methodology corresponds.
 const OF_TIME: [&str; 10] = [
     "at_rest",
     "decides_in_time",

@@ -107,7 +107,7 @@ impl fmt::Display for Error {
 
 impl std::error::Error for Error {}
 
-/// What finds faults of behaviour first, by `cargo xtask eval-faults`; the sums follow a blank line.
+/// What finds faults of behaviour first, by `cargo xtask eval-faults`; sums follow a blank line.
 const FOUND: &str = include_str!("../faults/found.txt");
 /// Cycles of a body in a second.
 const CYCLES: f64 = 50.0;

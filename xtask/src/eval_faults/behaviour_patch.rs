@@ -1,5 +1,6 @@
-//! A change of behaviour in all ways, a fault or a change request, as a file: prose, `Class:`, `Player:`, and for each way `Way:` followed by
-//! unified diffs or `Cannot be made:` with the reason.
+//! A change of behaviour in all ways, a fault or a change request, as a file: prose, `Class:`,
+//! `Player:`, and for each way `Methodology:` followed by unified diffs or `Cannot be made:` with
+//! the reason.
 
 use std::collections::BTreeMap;
 use std::error::Error;
@@ -10,31 +11,31 @@ use crate::faults::patch;
 
 /// How a player is built, as in `monas eval`.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
-pub(crate) enum Way {
+pub(crate) enum Methodology {
     Direct,
     Agents,
     Aseme,
 }
 
-impl Way {
-    pub(crate) const ALL: [Way; 3] = [Way::Direct, Way::Agents, Way::Aseme];
+impl Methodology {
+    pub(crate) const ALL: [Methodology; 3] = [Methodology::Direct, Methodology::Agents, Methodology::Aseme];
 
     pub(crate) fn name(self) -> &'static str {
         match self {
-            Way::Direct => "direct",
-            Way::Agents => "agents",
-            Way::Aseme => "aseme",
+            Methodology::Direct => "direct",
+            Methodology::Agents => "agents",
+            Methodology::Aseme => "aseme",
         }
     }
 
     /// Whether a file is a hand-written source of this way.
     pub(crate) fn owns(self, file: &str) -> bool {
         let prefixes: &[&str] = match self {
-            Way::Direct => &["soccer/monas-eval/src/direct", "soccer/monas-eval/src/thresholds/"],
-            Way::Agents => {
+            Methodology::Direct => &["soccer/monas-eval/src/direct", "soccer/monas-eval/src/thresholds/"],
+            Methodology::Agents => {
                 &["soccer/monas-eval/src/agents", "soccer/monas-eval/src/thresholds/", "config/evaluation/"]
             }
-            Way::Aseme => &["models/"],
+            Methodology::Aseme => &["models/"],
         };
         prefixes.iter().any(|prefix| file.starts_with(prefix))
     }
@@ -58,7 +59,7 @@ pub(crate) struct BehaviourPatch {
     pub(crate) class: String,
     /// `goalie` or `attacker`: the role whose model is changed.
     pub(crate) player: String,
-    pub(crate) edits: BTreeMap<Way, Edit>,
+    pub(crate) edits: BTreeMap<Methodology, Edit>,
 }
 
 /// All faults of a folder, sorted by name.
@@ -77,7 +78,7 @@ pub(crate) fn read(folder: &Path) -> Result<Vec<BehaviourPatch>, Box<dyn Error>>
 
 fn parse(name: &str, text: &str) -> Result<BehaviourPatch, String> {
     let mut fault = BehaviourPatch { name: name.to_owned(), ..BehaviourPatch::default() };
-    let (head, ways) = text.split_once("\nWay: ").ok_or_else(|| format!("{name}: no `Way:`"))?;
+    let (head, ways) = text.split_once("\nWay: ").ok_or_else(|| format!("{name}: no `Methodology:`"))?;
     for line in head.lines() {
         match line.split_once(": ") {
             Some(("Class", class)) => fault.class = class.trim().to_owned(),
@@ -87,14 +88,14 @@ fn parse(name: &str, text: &str) -> Result<BehaviourPatch, String> {
     }
     for section in ways.split("\nWay: ") {
         let (way, body) = section.split_once('\n').unwrap_or((section, ""));
-        let way = Way::ALL.into_iter().find(|it| it.name() == way.trim());
+        let way = Methodology::ALL.into_iter().find(|it| it.name() == way.trim());
         let way = way.ok_or_else(|| format!("{name}: a way is direct, agents or aseme"))?;
         fault.edits.insert(way, edit(body).ok_or_else(|| format!("{name}: no edit for {}", way.name()))?);
     }
     let is_complete = !fault.prose.is_empty()
         && !fault.class.is_empty()
         && ["goalie", "attacker"].contains(&fault.player.as_str())
-        && fault.edits.len() == Way::ALL.len();
+        && fault.edits.len() == Methodology::ALL.len();
     is_complete.then_some(fault).ok_or_else(|| format!("{name}: prose, class, player or a way is missing"))
 }
 
@@ -102,8 +103,8 @@ fn edit(body: &str) -> Option<Edit> {
     if let Some(reason) = body.trim().strip_prefix("Cannot be made: ") {
         return Some(Edit::CannotBeMade(reason.trim().to_owned())).filter(|_| !reason.trim().is_empty());
     }
-    // A blank line separates the last diff from the next way.
-    let body = format!("{}\n", body.trim_end());
+    // Blank lines may separate the last diff from the next way; a blank line of a diff has a space.
+    let body = format!("{}\n", body.trim_end_matches('\n'));
     let mut diffs: Vec<(String, String)> = Vec::new();
     for line in body.split_inclusive('\n') {
         if let Some(file) = line.strip_prefix("--- a/") {
@@ -119,7 +120,7 @@ impl BehaviourPatch {
     /// The files that it changes in a way, with the fault.
     pub(crate) fn apply(
         &self,
-        way: Way,
+        way: Methodology,
         read: impl Fn(&str) -> Result<String, Box<dyn Error>>,
     ) -> Result<BTreeMap<String, String>, Box<dyn Error>> {
         match self.edits.get(&way) {
@@ -132,7 +133,7 @@ impl BehaviourPatch {
 
 impl BehaviourPatch {
     /// How many lines of code, places and files it changes in the sources of a way, without tests.
-    pub(crate) fn extent(&self, way: Way) -> (usize, usize, usize) {
+    pub(crate) fn extent(&self, way: Methodology) -> (usize, usize, usize) {
         let Some(Edit::Diffs(diffs)) = self.edits.get(&way) else { return (0, 0, 0) };
         let own: Vec<&str> =
             diffs.iter().filter(|(file, _)| way.owns(file)).map(|(_, diff)| diff.as_str()).collect();
@@ -157,16 +158,21 @@ mod tests {
     fn a_fault_has_an_edit_or_a_reason_for_each_way() {
         let fault = parse("f", TEXT).unwrap();
         assert_eq!((fault.class.as_str(), fault.player.as_str()), ("wrong sign", "goalie"));
-        assert_eq!(fault.apply(Way::Direct, |_| Ok("one\ntwo\n".into())).unwrap()["x.rs"], "one\nthree\n");
-        assert!(matches!(&fault.edits[&Way::Agents], Edit::CannotBeMade(why) if why == "it has none."));
-        assert_eq!(fault.apply(Way::Aseme, |_| Ok("one\n".into())).unwrap()["x.srm"], "two\n");
+        assert_eq!(
+            fault.apply(Methodology::Direct, |_| Ok("one\ntwo\n".into())).unwrap()["x.rs"],
+            "one\nthree\n"
+        );
+        assert!(
+            matches!(&fault.edits[&Methodology::Agents], Edit::CannotBeMade(why) if why == "it has none.")
+        );
+        assert_eq!(fault.apply(Methodology::Aseme, |_| Ok("one\n".into())).unwrap()["x.srm"], "two\n");
     }
 
     #[test]
     fn comments_and_tests_are_no_edits() {
         let of_models = TEXT.replace("x.srm", "models/x.srm").replace("+two\n", "+two\n+# why\n");
         let fault = parse("f", &of_models).unwrap();
-        assert_eq!(Way::ALL.map(|way| fault.extent(way)), [(0, 0, 0), (0, 0, 0), (2, 1, 1)]);
+        assert_eq!(Methodology::ALL.map(|way| fault.extent(way)), [(0, 0, 0), (0, 0, 0), (2, 1, 1)]);
     }
 
     #[test]
@@ -175,9 +181,9 @@ mod tests {
             ("It is wrong.", ""),
             ("Class: wrong sign", ""),
             ("goalie", "referee"),
-            ("Way: agents\nCannot be made: it has none.\n", ""),
+            ("Methodology: agents\nCannot be made: it has none.\n", ""),
             ("Cannot be made: it has none.", ""),
-            ("Way: aseme", "Way: other"),
+            ("Methodology: aseme", "Methodology: other"),
         ] {
             assert!(parse("f", &TEXT.replace(part, instead)).is_err(), "without {part}");
         }

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
-use super::behaviour_patch::{BehaviourPatch, Way};
+use super::behaviour_patch::{BehaviourPatch, Methodology};
 use crate::faults::copy::WorkspaceCopy;
 
 /// What finds a fault.
@@ -81,7 +81,7 @@ pub(crate) struct Bench {
     monas: PathBuf,
     /// The findings of the checks of the unchanged sources, by arguments of the command.
     sound: BTreeMap<Vec<String>, String>,
-    counts: BTreeMap<Way, Counts>,
+    counts: BTreeMap<Methodology, Counts>,
 }
 
 impl Bench {
@@ -104,7 +104,7 @@ impl Bench {
             }
         }
         bench.learn(configuration_check())?;
-        for way in Way::ALL {
+        for way in Methodology::ALL {
             bench.learn_counts(way)?;
         }
         Ok(bench)
@@ -121,7 +121,7 @@ impl Bench {
     }
 
     /// Plays the unchanged way, which has to pass all stages, with other seeds too.
-    fn learn_counts(&mut self, way: Way) -> Result<(), Box<dyn Error>> {
+    fn learn_counts(&mut self, way: Methodology) -> Result<(), Box<dyn Error>> {
         for player in ["goalie", "attacker"] {
             let first = [self.compile(way)?, self.check(way, player)?, self.test(way, player)?];
             if let Some(evidence) = first.into_iter().flatten().next() {
@@ -140,14 +140,19 @@ impl Bench {
     }
 
     /// Makes a fault in a way and runs the stages until one finds it.
-    pub(crate) fn find(&self, way: Way, fault: &BehaviourPatch) -> Result<Finding, Box<dyn Error>> {
+    pub(crate) fn find(&self, way: Methodology, fault: &BehaviourPatch) -> Result<Finding, Box<dyn Error>> {
         let changed = fault.apply(way, |file| self.copy.read(file))?;
         self.copy.with(&changed, || self.first_finding(way, &fault.player))?
     }
 
-    /// Makes a change request in a way, which no stage before the matches may find; returns the time
-    /// from the edit until the program runs.
-    pub(crate) fn adopt(&self, way: Way, change: &BehaviourPatch) -> Result<Duration, Box<dyn Error>> {
+    /// Makes a change request in a way, which no stage before the matches may find; returns the
+    /// time from the edit until the program runs.
+    #[expect(clippy::disallowed_methods, reason = "it measures a build")]
+    pub(crate) fn adopt(
+        &self,
+        way: Methodology,
+        change: &BehaviourPatch,
+    ) -> Result<Duration, Box<dyn Error>> {
         let changed = change.apply(way, |file| Ok(self.copy.read(file).unwrap_or_default()))?;
         self.copy.with(&changed, || {
             let began = Instant::now();
@@ -161,7 +166,7 @@ impl Bench {
         })?
     }
 
-    fn first_finding(&self, way: Way, player: &str) -> Result<Finding, Box<dyn Error>> {
+    fn first_finding(&self, way: Methodology, player: &str) -> Result<Finding, Box<dyn Error>> {
         let finding = |finder, evidence| Ok(Finding { finder, evidence });
         if let Some(evidence) = self.compile(way)? {
             return finding(Finder::Compiler, evidence);
@@ -184,10 +189,10 @@ impl Bench {
     }
 
     /// The first error or warning of the compiler. A role is not compiled.
-    fn compile(&self, way: Way) -> Result<Option<String>, Box<dyn Error>> {
+    fn compile(&self, way: Methodology) -> Result<Option<String>, Box<dyn Error>> {
         let output = match way {
-            Way::Direct | Way::Agents => self.cargo(&["build", "--example", "play"])?,
-            Way::Aseme => return Ok(None),
+            Methodology::Direct | Methodology::Agents => self.cargo(&["build", "--example", "play"])?,
+            Methodology::Aseme => return Ok(None),
         };
         let said = String::from_utf8_lossy(&output.stderr);
         let first = said.lines().find(|line| is_finding(line));
@@ -199,11 +204,11 @@ impl Bench {
     }
 
     /// The first line of a check that is not in that of the unchanged sources.
-    fn check(&self, way: Way, player: &str) -> Result<Option<String>, Box<dyn Error>> {
+    fn check(&self, way: Methodology, player: &str) -> Result<Option<String>, Box<dyn Error>> {
         let checks = match way {
-            Way::Direct => return Ok(None),
-            Way::Agents => vec![configuration_check()],
-            Way::Aseme => model_checks(player).into(),
+            Methodology::Direct => return Ok(None),
+            Methodology::Agents => vec![configuration_check()],
+            Methodology::Aseme => model_checks(player).into(),
         };
         for arguments in checks {
             let output = self.monas(&arguments)?;
@@ -220,14 +225,14 @@ impl Bench {
     }
 
     /// The first failed test of decisions.
-    fn test(&self, way: Way, player: &str) -> Result<Option<String>, Box<dyn Error>> {
-        if way == Way::Aseme {
+    fn test(&self, way: Methodology, player: &str) -> Result<Option<String>, Box<dyn Error>> {
+        if way == Methodology::Aseme {
             return self.run_scenarios(player);
         }
         let filter = format!("{}::", way.name());
         let output = self.cargo(&["test", "--lib", "--", &filter])?;
         let said = text(&output);
-        let failed = said.lines().find(|line| line.starts_with("test ") && line.ends_with("FAILED"));
+        let failed = said.lines().find_map(|line| line.strip_suffix(" --- FAILED"));
         match (failed, output.status.success()) {
             (Some(line), _) => Ok(Some(line.to_owned())),
             (None, true) => Ok(None),
@@ -255,13 +260,17 @@ impl Bench {
     }
 
     /// The sums of the matches of a way, or why one cannot be played.
-    fn play(&self, way: Way, seeds: [(u32, u32); 2]) -> Result<Result<Counts, String>, Box<dyn Error>> {
+    fn play(
+        &self,
+        way: Methodology,
+        seeds: [(u32, u32); 2],
+    ) -> Result<Result<Counts, String>, Box<dyn Error>> {
         let (file, direct) = match way {
-            Way::Direct => ("config/evaluation/direct.xml", Some("direct")),
-            Way::Agents => ("config/evaluation/agents.xml", None),
-            Way::Aseme => (ASEME_MATCH, None),
+            Methodology::Direct => ("config/evaluation/direct.xml", Some("direct")),
+            Methodology::Agents => ("config/evaluation/agents.xml", None),
+            Methodology::Aseme => (ASEME_MATCH, None),
         };
-        if way == Way::Aseme {
+        if way == Methodology::Aseme {
             copy_roles(&self.copy, "config/evaluation/blue")?;
         }
         let program = self.copy.target.join("release/examples/play");
