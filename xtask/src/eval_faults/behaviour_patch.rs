@@ -78,7 +78,8 @@ pub(crate) fn read(folder: &Path) -> Result<Vec<BehaviourPatch>, Box<dyn Error>>
 
 fn parse(name: &str, text: &str) -> Result<BehaviourPatch, String> {
     let mut fault = BehaviourPatch { name: name.to_owned(), ..BehaviourPatch::default() };
-    let (head, ways) = text.split_once("\nWay: ").ok_or_else(|| format!("{name}: no `Methodology:`"))?;
+    let (head, ways) =
+        text.split_once("\nMethodology: ").ok_or_else(|| format!("{name}: no `Methodology:`"))?;
     for line in head.lines() {
         match line.split_once(": ") {
             Some(("Class", class)) => fault.class = class.trim().to_owned(),
@@ -86,7 +87,7 @@ fn parse(name: &str, text: &str) -> Result<BehaviourPatch, String> {
             _ => fault.prose.push_str(line.trim()),
         }
     }
-    for section in ways.split("\nWay: ") {
+    for section in ways.split("\nMethodology: ") {
         let (way, body) = section.split_once('\n').unwrap_or((section, ""));
         let way = Methodology::ALL.into_iter().find(|it| it.name() == way.trim());
         let way = way.ok_or_else(|| format!("{name}: a way is direct, agents or aseme"))?;
@@ -152,7 +153,7 @@ impl BehaviourPatch {
 mod tests {
     use super::*;
 
-    const TEXT: &str = "It is wrong.\n\nClass: wrong sign\nPlayer: goalie\n\nWay: direct\n--- a/x.rs\n+++ b/x.rs\n@@ -1,2 +1,2 @@\n one\n-two\n+three\n\nWay: agents\nCannot be made: it has none.\n\nWay: aseme\n--- a/x.srm\n+++ b/x.srm\n@@ -1 +1 @@\n-one\n+two\n";
+    const TEXT: &str = "It is wrong.\n\nClass: wrong sign\nPlayer: goalie\n\nMethodology: direct\n--- a/x.rs\n+++ b/x.rs\n@@ -1,2 +1,2 @@\n one\n-two\n+three\n\nMethodology: agents\nCannot be made: it has none.\n\nMethodology: aseme\n--- a/x.srm\n+++ b/x.srm\n@@ -1 +1 @@\n-one\n+two\n";
 
     #[test]
     fn a_fault_has_an_edit_or_a_reason_for_each_way() {
