@@ -5,8 +5,8 @@
 //! fault, and each must fail with it. A fault that does not compile is not detected, and a patch
 //! that no longer applies to the sources is an error: it must be updated.
 
-mod copy;
-mod patch;
+pub(crate) mod copy;
+pub(crate) mod patch;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::error::Error;
@@ -22,7 +22,7 @@ const FOLDER: &str = "charts/yase/tests/faults";
 /// Injects one fault after the other, prints a table, and fails unless all are detected.
 pub(crate) fn run(root: &Path) -> Result<ExitCode, Box<dyn Error>> {
     let faults = patch::read(&root.join(FOLDER))?;
-    let copy = WorkspaceCopy::make(root)?;
+    let copy = WorkspaceCopy::make(root, "faults")?;
     let all: BTreeSet<&FaultTest> = faults.iter().flat_map(|fault| &fault.tests).collect();
     let sound = run_tests(&copy, all.iter().copied())?;
     let broken: Vec<&FaultTest> = all.into_iter().filter(|test| sound.get(*test) != Some(&true)).collect();
@@ -41,16 +41,8 @@ pub(crate) fn run(root: &Path) -> Result<ExitCode, Box<dyn Error>> {
 
 /// How a fault is detected, or why it is not. Afterwards the copy is restored.
 fn judge(copy: &WorkspaceCopy, fault: &Fault) -> Result<Result<String, String>, Box<dyn Error>> {
-    let broken = patch::apply(fault, |file| copy.read(file))?;
-    let sound: Vec<_> =
-        broken.keys().map(|file| Ok((file, copy.read(file)?))).collect::<Result<_, Box<dyn Error>>>()?;
-    for (file, text) in &broken {
-        copy.write(file, text)?;
-    }
-    let verdicts = run_tests(copy, &fault.tests);
-    for (file, text) in sound {
-        copy.write(file, &text)?;
-    }
+    let broken = patch::apply(&fault.name, &fault.diffs, |file| copy.read(file))?;
+    let verdicts = copy.with(&broken, || run_tests(copy, &fault.tests))?;
     Ok(match verdicts {
         Ok(verdicts) => evaluate(fault, &verdicts),
         Err(error) => Err(format!("NOT CAUGHT: {error}")),
@@ -95,7 +87,8 @@ mod tests {
         let faults = patch::read(&root.join(FOLDER)).unwrap();
         assert!(faults.len() >= 14, "{} faults", faults.len());
         for fault in &faults {
-            let changed = patch::apply(fault, |file| Ok(std::fs::read_to_string(root.join(file))?));
+            let changed =
+                patch::apply(&fault.name, &fault.diffs, |file| Ok(std::fs::read_to_string(root.join(file))?));
             let changed = changed.unwrap_or_else(|error| panic!("{error}"));
             assert!(!changed.is_empty(), "{} changes nothing", fault.name);
         }

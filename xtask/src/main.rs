@@ -5,9 +5,12 @@
 //! - `bodies` links each crate of a body under `robots/` into the command `monas`.
 //! - `faults` injects classic faults into the engine, one at a time, and requires that the tests
 //!   detect each.
+//! - `eval-faults` injects the same faults of behaviour into the three ways of `monas eval` and
+//!   records what finds each first: compiler, check of the model, tests or matches.
 //! - `project` creates a project with `monas new`, builds, tests and runs it, and extends it.
 //! - `season` plays a season and writes its golden table; with `--check` it compares.
 
+mod eval_faults;
 mod faults;
 mod project;
 mod season;
@@ -23,6 +26,10 @@ cargo xtask NAME
   tidy --allowances  print the table of allowances for today's sources
   bodies             link each crate of a body under robots/ into the command `monas`
   faults             inject classic faults into a copy and check that the tests detect each
+  eval-faults        inject faults of behaviour into the ways of `monas eval`, write what finds each
+  eval-faults --check
+                     the same, and compare the result with its golden table
+  eval-faults NAME   inject one of these faults, print what finds it
   project            create a project with `monas new`, build, test, run and extend it
   season             play a season and write its golden table (tests/golden)
   season --check     play a season and compare it with its golden table";
@@ -35,6 +42,9 @@ fn main() -> ExitCode {
         ["tidy", "--allowances"] => tidy::allowances(&root()),
         ["bodies"] => tidy::link_bodies(&root()),
         ["faults"] => faults::run(&root()),
+        ["eval-faults"] => eval_faults::run(&root(), eval_faults::Task::Write),
+        ["eval-faults", "--check"] => eval_faults::run(&root(), eval_faults::Task::Check),
+        ["eval-faults", name] => eval_faults::run(&root(), eval_faults::Task::Print(name)),
         ["project"] => project::run(&root()),
         ["season"] => season::season(&root(), &[]),
         ["season", "--check"] => season::season(&root(), &["--check"]),

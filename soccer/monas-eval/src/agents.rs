@@ -47,3 +47,6 @@ fn is_under_way(blackboard: &Blackboard, number: Option<u64>) -> bool {
     let done = blackboard.read(topics::MOTION_STATE).map_or(0, |state| state.done);
     number.is_some_and(|number| done < number)
 }
+
+#[cfg(test)]
+mod tests;

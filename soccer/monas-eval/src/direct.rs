@@ -307,3 +307,6 @@ impl<B: Behaviour> Robot for DirectRobot<B> {
         self.body.rest(now)
     }
 }
+
+#[cfg(test)]
+mod tests;

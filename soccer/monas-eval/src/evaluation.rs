@@ -1,7 +1,7 @@
 //! Matches of each methodology, and what its programs cost.
 
 use std::fmt;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use monas::Registry;
@@ -107,6 +107,8 @@ impl fmt::Display for Error {
 
 impl std::error::Error for Error {}
 
+/// What finds faults of behaviour first, by `cargo xtask eval-faults`; sums follow a blank line.
+const FOUND: &str = include_str!("../faults/found.txt");
 /// Cycles of a body in a second.
 const CYCLES: f64 = 50.0;
 /// Robots of blue.
@@ -156,21 +158,36 @@ fn plan(
     methodology: Methodology,
     registry: &Registry,
 ) -> Result<MatchPlan, Error> {
-    let path = settings.folder.join(methodology.file());
-    let plan = MatchSource::load(&path, registry).map_err(|found| {
-        Error(found.first().map_or_else(|| path.display().to_string(), ToString::to_string))
-    })?;
+    let plan = load(&settings.folder.join(methodology.file()), registry)?;
     Ok(match methodology {
-        Methodology::Direct => plan.embody(|team, number, body| match (team, number) {
-            (1, 1) => Box::new(DirectRobot::new(body, DirectGoalie::default())) as Box<dyn Robot>,
-            (1, _) => Box::new(DirectRobot::new(body, DirectPlayer::default())),
-            _ => body,
-        }),
+        Methodology::Direct => direct_players(plan),
         Methodology::Agents | Methodology::Aseme => plan,
     })
 }
 
-fn play(plan: MatchPlan, seed: u64, length: Duration) -> Result<PlayFigures, Error> {
+/// Reads a match file.
+///
+/// # Errors
+/// The first diagnostic of the file or of those it refers to.
+pub fn load(path: &Path, registry: &Registry) -> Result<MatchPlan, Error> {
+    MatchSource::load(path, registry)
+        .map_err(|found| Error(found.first().map_or_else(|| path.display().to_string(), ToString::to_string)))
+}
+
+/// Builds the first team directly on its bodies: a goalie with the number 1, and attackers.
+pub fn direct_players(plan: MatchPlan) -> MatchPlan {
+    plan.embody(|team, number, body| match (team, number) {
+        (1, 1) => Box::new(DirectRobot::new(body, DirectGoalie::default())) as Box<dyn Robot>,
+        (1, _) => Box::new(DirectRobot::new(body, DirectPlayer::default())),
+        _ => body,
+    })
+}
+
+/// Plays a match and counts what the first team did.
+///
+/// # Errors
+/// The match ends early.
+pub fn play(plan: MatchPlan, seed: u64, length: Duration) -> Result<PlayFigures, Error> {
     let failed = |error: monas_match::Error| Error(error.to_string());
     let mut running = plan.start(MatchOptions { seed, record: None }).map_err(failed)?;
     running.advance(length).map_err(failed)?;
@@ -256,7 +273,9 @@ impl MatchCost {
 }
 
 impl PlayFigures {
-    fn plus(self, other: PlayFigures) -> PlayFigures {
+    /// The sums of two.
+    #[must_use]
+    pub fn plus(self, other: PlayFigures) -> PlayFigures {
         PlayFigures {
             goals: self.goals + other.goals,
             conceded: self.conceded + other.conceded,
@@ -265,6 +284,18 @@ impl PlayFigures {
             saves: self.saves + other.saves,
             falls: self.falls + other.falls,
         }
+    }
+
+    /// The counts with their names in tables.
+    pub fn counts(&self) -> [(&'static str, u32); 6] {
+        [
+            ("goals", self.goals),
+            ("goals conceded", self.conceded),
+            ("shots", self.shots),
+            ("shots faced", self.shots_faced),
+            ("saves", self.saves),
+            ("falls", self.falls),
+        ]
     }
 }
 
@@ -309,6 +340,7 @@ impl fmt::Display for Evaluation {
             }
             writeln!(f)?;
         }
-        Ok(())
+        let sums = FOUND.split_once("\n\n").map_or("", |(_, sums)| sums);
+        write!(f, "\n{sums}")
     }
 }

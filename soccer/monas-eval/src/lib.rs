@@ -27,11 +27,14 @@
 //! ```
 
 pub mod agents;
+#[cfg(test)]
+mod decision_cases;
 pub mod direct;
 mod evaluation;
 pub mod sources;
 mod thresholds;
 
 pub use evaluation::{
-    CostFigures, Error, Evaluation, EvaluationSettings, Methodology, PlayFigures, Row, evaluate,
+    CostFigures, Error, Evaluation, EvaluationSettings, Methodology, PlayFigures, Row, direct_players,
+    evaluate, load, play,
 };

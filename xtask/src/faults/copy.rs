@@ -13,16 +13,18 @@ pub(crate) type TestResults = BTreeMap<FaultTest, bool>;
 
 /// A copy of the workspace.
 pub(crate) struct WorkspaceCopy {
-    sources: PathBuf,
-    target: PathBuf,
+    /// Its folder.
+    pub(crate) sources: PathBuf,
+    /// Its target folder.
+    pub(crate) target: PathBuf,
 }
 
 impl WorkspaceCopy {
-    /// Copies all files under version control. Unchanged files are not touched, so that they are
-    /// not rebuilt.
-    pub(crate) fn make(root: &Path) -> Result<WorkspaceCopy, Box<dyn Error>> {
+    /// Copies all files under version control into a folder of the target folder. Unchanged files
+    /// are not touched, so that they are not rebuilt.
+    pub(crate) fn make(root: &Path, name: &str) -> Result<WorkspaceCopy, Box<dyn Error>> {
         let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), PathBuf::from);
-        let folder = root.join(target).join("faults");
+        let folder = root.join(target).join(name);
         let copy = WorkspaceCopy { sources: folder.join("sources"), target: folder.join("build") };
         let listed = Command::new("git").current_dir(root).args(["ls-files", "-z"]).output()?;
         if !listed.status.success() {
@@ -51,7 +53,30 @@ impl WorkspaceCopy {
     }
 
     pub(crate) fn write(&self, file: &str, text: &str) -> Result<(), Box<dyn Error>> {
-        Ok(fs::write(self.sources.join(file), text)?)
+        let path = self.sources.join(file);
+        fs::create_dir_all(path.parent().unwrap_or(&self.sources))?;
+        Ok(fs::write(path, text)?)
+    }
+
+    /// Does something while files have other texts; afterwards they are restored, and new ones
+    /// removed.
+    pub(crate) fn with<R>(
+        &self,
+        changed: &BTreeMap<String, String>,
+        act: impl FnOnce() -> R,
+    ) -> Result<R, Box<dyn Error>> {
+        let sound: Vec<_> = changed.keys().map(|file| (file, self.read(file).ok())).collect();
+        for (file, text) in changed {
+            self.write(file, text)?;
+        }
+        let result = act();
+        for (file, text) in sound {
+            match text {
+                Some(text) => self.write(file, &text)?,
+                None => fs::remove_file(self.sources.join(file))?,
+            }
+        }
+        Ok(result)
     }
 
     /// Builds a program and runs some of its tests.

@@ -66,17 +66,18 @@ fn parse(name: String, text: &str) -> Result<Fault, String> {
     }
 }
 
-/// The files that a fault changes, with the fault applied.
+/// The files that the diffs of a fault change, with the fault applied.
 pub(crate) fn apply(
-    fault: &Fault,
+    name: &str,
+    diffs: &[(String, String)],
     read: impl Fn(&str) -> Result<String, Box<dyn Error>>,
 ) -> Result<BTreeMap<String, String>, Box<dyn Error>> {
     let mut files = BTreeMap::new();
-    for (file, diff) in &fault.diffs {
-        let sound = read(file).map_err(|error| format!("{}: {file}: {error}", fault.name))?;
-        let patch = diffy::Patch::from_str(diff).map_err(|error| format!("{}: {error}", fault.name))?;
+    for (file, diff) in diffs {
+        let sound = read(file).map_err(|error| format!("{name}: {file}: {error}"))?;
+        let patch = diffy::Patch::from_str(diff).map_err(|error| format!("{name}: {error}"))?;
         let broken = diffy::apply(&sound, &patch)
-            .map_err(|error| format!("{} does not fit {file} any more: {error}", fault.name))?;
+            .map_err(|error| format!("{name} does not fit {file} any more: {error}"))?;
         files.insert(file.clone(), broken);
     }
     Ok(files)
@@ -96,14 +97,14 @@ mod tests {
             (fault.tests[0].program.as_str(), fault.tests[0].name.as_str()),
             ("-p yase --test rules", "a::b")
         );
-        let files = apply(&fault, |_| Ok("one\ntwo\n".into())).unwrap();
+        let files = apply("f", &fault.diffs, |_| Ok("one\ntwo\n".into())).unwrap();
         assert_eq!(files["x.rs"], "one\nthree\n");
     }
 
     #[test]
     fn mismatched_or_incomplete_input_is_rejected() {
         let fault = parse("f".into(), TEXT).unwrap();
-        assert!(apply(&fault, |_| Ok("one\n2\n".into())).is_err());
+        assert!(apply("f", &fault.diffs, |_| Ok("one\n2\n".into())).is_err());
         assert!(parse("f".into(), &TEXT.replace("Rule", "Role")).is_err());
         assert!(parse("f".into(), &TEXT.replace("Caught", "Seen")).is_err());
         assert!(parse("f".into(), "Rule: R1\nCaught by: -p yase a\n").is_err());

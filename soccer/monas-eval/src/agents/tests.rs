@@ -1,0 +1,206 @@
+//! The decisions of the behaviours as agents, and how often their agents run.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::time::Duration;
+
+use monas::{Activity, Progress, Registry};
+use monas_match::{MatchOptions, MatchSource};
+use monas_soccer::functionality::head::Gaze;
+use monas_soccer::functionality::motion::{DesiredMotion, Skill};
+use monas_soccer::functionality::walk::Walk;
+use monas_soccer::{GameState, HeadMode, MotionKind, MotionState};
+use narukom::{Hub, Retention, Timestamp, Topic};
+
+use super::*;
+use crate::decision_cases::{Case, Decision, Look, Requests, game, goalie_cases, player_cases};
+
+/// A behaviour, its blackboard, and one for all other agents of its robot.
+struct Fixture<A> {
+    behaviour: A,
+    now: Timestamp,
+    blackboard: Blackboard,
+    others: Blackboard,
+}
+
+impl<A: Activity + Default> Fixture<A> {
+    /// A robot that stands, during play.
+    fn new() -> Fixture<A> {
+        let hub = Hub::with_linked_topics("robot").unwrap();
+        let [blackboard, others] = ["behaviour", "others"].map(|name| hub.blackboard(name));
+        let now = Timestamp::from_nanos(10_000_000_000);
+        let mut fixture = Fixture { behaviour: A::default(), now, blackboard, others };
+        fixture.publish(topics::GAME_STATE, game());
+        fixture.report(MotionPhase::Standing, 0);
+        fixture
+    }
+
+    fn publish<K: Retention>(&mut self, topic: Topic<K>, message: K::Message) {
+        self.others.process_messages(self.now);
+        self.others.publish(topic, message).unwrap();
+        self.others.publish_all(self.now);
+    }
+
+    fn report(&mut self, phase: MotionPhase, done: u64) {
+        self.publish(topics::MOTION_STATE, MotionState { phase: phase.into(), done });
+    }
+
+    fn finish_motion(&mut self) {
+        let number = self.others.read(topics::MOTION).map_or(0, |request| request.number);
+        self.report(MotionPhase::Standing, number);
+    }
+
+    fn wait(&mut self, millis: u64) {
+        self.now += Duration::from_millis(millis);
+    }
+
+    /// Decides once on the inputs of a case.
+    fn decide(&mut self, case: &Case) -> Requests {
+        self.publish(topics::POSE, case.pose);
+        self.publish(topics::BALL, case.ball);
+        self.run()
+    }
+
+    /// Calls the behaviour once; returns what it requests.
+    fn run(&mut self) -> Requests {
+        let before = self.newest();
+        self.blackboard.process_messages(self.now);
+        assert_eq!(self.behaviour.execute(&mut self.blackboard).unwrap(), Progress::Done);
+        self.blackboard.publish_all(self.now);
+        let after = self.newest();
+        let head = self.others.read(topics::HEAD).filter(|_| after.0 != before.0);
+        let look = head.map(|head| match head.mode() {
+            HeadMode::Look => Look::At(Gaze { yaw: head.yaw, pitch: head.pitch }),
+            HeadMode::Scan | HeadMode::Ahead => Look::Scan,
+        });
+        let request = self.others.read(topics::MOTION).filter(|_| after.1 != before.1);
+        let motion = request.map(|request| match request.kind() {
+            MotionKind::Stand => DesiredMotion::Stand,
+            MotionKind::Walk => {
+                DesiredMotion::Walk(Walk { ahead: request.vx, left: request.vy, turn: request.wz })
+            }
+            MotionKind::KickLeft => DesiredMotion::Skill(Skill::KickLeft),
+            MotionKind::KickRight => DesiredMotion::Skill(Skill::KickRight),
+            MotionKind::FallLeft => DesiredMotion::Skill(Skill::FallLeft),
+            MotionKind::FallRight => DesiredMotion::Skill(Skill::FallRight),
+            MotionKind::DiveLeft => DesiredMotion::Skill(Skill::DiveLeft),
+            MotionKind::DiveRight => DesiredMotion::Skill(Skill::DiveRight),
+            MotionKind::StandUp => DesiredMotion::Skill(Skill::StandUp),
+        });
+        (look, motion)
+    }
+
+    /// The numbers of the newest requests for head and body.
+    fn newest(&mut self) -> (Option<u64>, Option<u64>) {
+        self.others.process_messages(self.now);
+        let head = self.others.sample(topics::HEAD).map(|request| request.header.sequence);
+        (head, self.others.sample(topics::MOTION).map(|request| request.header.sequence))
+    }
+}
+
+fn find(cases: Vec<Case>, scenario: &str) -> Case {
+    cases.into_iter().find(|case| case.scenario == scenario).unwrap()
+}
+
+#[test]
+fn goalie_decides_as_in_the_scenarios() {
+    for case in goalie_cases() {
+        case.assert(Fixture::<BehaviorGoalie>::new().decide(&case));
+    }
+}
+
+#[test]
+fn player_decides_as_in_the_scenarios() {
+    for case in player_cases() {
+        case.assert(Fixture::<BehaviorPlayer>::new().decide(&case));
+    }
+}
+
+#[test]
+fn goalie_decides_again_when_its_dive_is_over() {
+    let mut fixture = Fixture::<BehaviorGoalie>::new();
+    let (dive, search) = (find(goalie_cases(), "dive_left"), find(goalie_cases(), "search"));
+    dive.assert(fixture.decide(&dive));
+    fixture.wait(100);
+    assert_eq!(fixture.decide(&search), (None, None));
+    fixture.finish_motion();
+    search.assert(fixture.decide(&search));
+    dive.assert(fixture.decide(&dive));
+}
+
+#[test]
+fn player_decides_again_when_its_kick_is_over() {
+    let mut fixture = Fixture::<BehaviorPlayer>::new();
+    let (kick, search) = (find(player_cases(), "kick_left"), find(player_cases(), "search"));
+    kick.assert(fixture.decide(&kick));
+    fixture.wait(100);
+    assert_eq!(fixture.decide(&search), (None, None));
+    fixture.finish_motion();
+    search.assert(fixture.decide(&search));
+    kick.assert(fixture.decide(&kick));
+}
+
+#[test]
+fn player_glances_for_a_moment_and_not_again_soon() {
+    let mut fixture = Fixture::<BehaviorPlayer>::new();
+    let glance = find(player_cases(), "look_at_goal");
+    let walk = Case { decision: Decision::WalkTowardsBall, ..glance };
+    for _ in 0..2 {
+        glance.assert(fixture.decide(&glance));
+        fixture.wait(300);
+        assert_eq!(fixture.decide(&glance), (None, None));
+        fixture.wait(100);
+        walk.assert(fixture.decide(&glance));
+        fixture.wait(1000);
+        walk.assert(fixture.decide(&glance));
+        fixture.wait(1600);
+    }
+}
+
+#[test]
+fn goalie_plays() {
+    play::<BehaviorGoalie>();
+}
+
+#[test]
+fn player_plays() {
+    play::<BehaviorPlayer>();
+}
+
+/// Stands up first, decides only during play and only on new estimates of the ball.
+fn play<A: Activity + Default>() {
+    let mut fixture = Fixture::<A>::new();
+    let search = find(goalie_cases(), "search");
+    fixture.report(MotionPhase::Fallen, 0);
+    assert_eq!(fixture.decide(&search), (None, Some(DesiredMotion::Stand)), "it stands up first");
+    fixture.report(MotionPhase::Standing, 0);
+    for state in [PlayerState::Set, PlayerState::Ready, PlayerState::Penalized] {
+        fixture.publish(topics::GAME_STATE, GameState { player_state: state.into(), ..game() });
+        assert_eq!(fixture.decide(&search), (None, None), "it waits for play");
+    }
+    fixture.publish(topics::GAME_STATE, game());
+    assert_eq!(fixture.decide(&search).0, Some(Look::Scan));
+    assert_eq!(fixture.run(), (None, None), "a message is used once");
+    assert_eq!(fixture.decide(&search).0, Some(Look::Scan));
+}
+
+#[test]
+fn agents_run_in_time() {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../config/evaluation/agents.xml");
+    let plan = MatchSource::load(file, &Registry::linked()).unwrap();
+    let mut running = plan.start(MatchOptions { seed: 1, record: None }).unwrap();
+    running.advance(Duration::from_secs(10)).unwrap();
+    let agents = running.finish().unwrap().agents;
+    for host in ["blue-1", "blue-2", "blue-3"] {
+        let cycles: BTreeMap<&str, u64> = agents
+            .iter()
+            .filter(|agent| agent.host == host)
+            .map(|agent| (agent.agent.as_str(), agent.cycles))
+            .collect();
+        assert_eq!(cycles.len(), 6, "{host}: {cycles:?}");
+        for (name, cycles) in cycles {
+            let expected: u64 = if (host, name) == ("blue-1", "Vision") { 50 } else { 100 };
+            assert!(expected.abs_diff(cycles) <= 1, "{host}: {name} ran {cycles} times in 10 s");
+        }
+    }
+}
