@@ -93,6 +93,7 @@ mod tape_moment;
 mod tape_pair;
 mod tape_run;
 mod tape_session;
+mod tape_values;
 mod text_positions;
 mod time;
 mod transition_explanation;

@@ -35,7 +35,7 @@ const BATCH: usize = 2048;
 const TABLES: Duration = Duration::from_secs(1);
 
 /// The interval between two looks at the values of charts that viewers see.
-const VALUES: Duration = Duration::from_millis(100);
+const VALUES: Duration = Duration::from_millis(33);
 
 /// The interval between two attempts to connect.
 const RETRY: Duration = Duration::from_millis(500);

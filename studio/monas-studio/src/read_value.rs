@@ -143,7 +143,7 @@ impl TapeRun {
     }
 
     /// The cycles of the chart's agent up to a moment, the latest first.
-    fn cycles<'a>(&'a self, moment: &ReadMoment<'a>) -> impl Iterator<Item = Cycle> + use<'a> {
+    pub(crate) fn cycles<'a>(&'a self, moment: &ReadMoment<'a>) -> impl Iterator<Item = Cycle> + use<'a> {
         let TapeChart { host, agent, .. } = moment.chart;
         let is_cycle = move |index: &usize| {
             self.entry(*index).is_some_and(|(_, channel)| {

@@ -19,6 +19,9 @@ const FASTEST: f64 = 1000.0;
 /// The time on the tape between two looks at the tables, in nanoseconds.
 const TABLES: u64 = 500_000_000;
 
+/// The time on a tape that plays between two looks at the values of a chart, in nanoseconds.
+const VALUES: u64 = 200_000_000;
+
 /// The view of one viewer, which plays and seeks for itself.
 pub(crate) struct TapeSession {
     tape: TapeRun,
@@ -38,6 +41,10 @@ pub(crate) struct TapeSession {
     camera: Option<ChosenCamera>,
     /// The message with the images that were sent last.
     sent_images: Option<usize>,
+    /// The chart whose values are seen, by its key.
+    values: Option<String>,
+    /// The moment of the values that were sent last: the number of messages, and the time.
+    sent_values: Option<(usize, u64)>,
     /// What is marked on the timeline.
     events: Vec<Value>,
     other: Option<OtherMoment>,
@@ -92,6 +99,8 @@ impl TapeSession {
             sent: None,
             camera: None,
             sent_images: None,
+            values: None,
+            sent_values: None,
             events,
             other: None,
         }
@@ -161,6 +170,20 @@ impl TapeSession {
 }
 
 impl TapeSession {
+    /// The values of the chosen chart, if they are of another moment than before; of a tape that
+    /// plays, now and then.
+    fn chart_values(&mut self) -> Option<Value> {
+        let key = self.values.as_ref()?;
+        let (count, now) = (self.moment.count, self.moment.view.now);
+        let is_due = self.sent_values.is_none_or(|(sent, at)| {
+            (sent, at) != (count, now) && (self.factor == 0.0 || now.abs_diff(at) >= VALUES)
+        });
+        let chart = self.tape.charts().iter().find(|chart| chart.key().text() == *key)?;
+        let active = self.moment.view.charts.get(&chart.key()).filter(|_| is_due)?.active();
+        self.sent_values = Some((count, now));
+        Some(self.tape.values_until(chart, active, count, now))
+    }
+
     /// The images at the moment, if they are others than before.
     fn images(&mut self, elapsed: Duration) -> Option<Value> {
         let cameras = cameras::of(self.tape.scene())?;
@@ -189,8 +212,8 @@ impl Session for TapeSession {
                 self.camera = host.map(ChosenCamera::new);
                 self.sent_images = None;
             }
-            // The guards at a moment of a tape are explained by `WhyTransition`.
-            ViewerRequest::Live | ViewerRequest::Model(..) | ViewerRequest::Values(_) => {}
+            ViewerRequest::Values(key) => (self.values, self.sent_values) = (key, None),
+            ViewerRequest::Live | ViewerRequest::Model(..) => {}
             ViewerRequest::Control(id, _) => {
                 let reason = "a tape cannot be changed";
                 return Some(json!({"type": "reply", "id": id, "done": false, "reason": reason}));
@@ -240,14 +263,15 @@ impl Session for TapeSession {
         if self.is_elsewhere {
             self.cursor = ViewCursor::default();
         }
-        let (sample, images) = (self.sample(), self.images(elapsed));
+        let (sample, images, values) = (self.sample(), self.images(elapsed), self.chart_values());
         let is_elsewhere = self.is_elsewhere;
         let beside = self.other.as_mut().and_then(|other| {
             let has_jumped = other.go_to(now) || is_elsewhere;
             other.frame(has_jumped)
         });
         let frame = self.moment.view.frame(&mut self.cursor, self.tape.scene());
-        let has_news = frame.is_some() || sample.is_some() || images.is_some() || beside.is_some();
+        let has_news =
+            frame.is_some() || sample.is_some() || images.is_some() || values.is_some() || beside.is_some();
         if !has_news && !self.is_new {
             return None;
         }
@@ -257,6 +281,9 @@ impl Session for TapeSession {
         }
         if let Some(images) = images {
             frame["camera"] = images;
+        }
+        if let Some(values) = values {
+            frame["values"] = values;
         }
         if let Some(beside) = beside {
             frame["beside"] = beside;

@@ -389,6 +389,24 @@ async function tape(browser) {
   assert.match(await textOf(page, '.reads'), /near = 0\.25[\s\S]*constant/);
   assert.match(await page.locator('.reads li').first().getAttribute('title'), /number \d+ on soccer\/ball by Attacker/);
   await shot(page, 'tape');
+  // what the chart knew at this moment: the kick has begun, with the ball at the right foot
+  await page.getByRole('button', { name: 'Values' }).click();
+  await until(page, 'guards that hold, and others', () => {
+    const signs = [...document.querySelectorAll('[aria-label=Guards] .sign')].map((sign) => sign.textContent);
+    return signs.includes('✓') && signs.includes('✗');
+  });
+  const ball = page.locator('[aria-label=Blackboards] details', { hasText: 'soccer/ball' }).first();
+  await ball.evaluate((details) => (details.open = true));
+  assert.match(await ball.innerText(), /soccer\/ball\s+0:0\d\.\d\s+.*distance 0\.1/);
+  const values = await textOf(page, '[aria-label=Timers]');
+  assert.match(values, /decision_timeout/);
+  await seek(20);
+  await until(page, 'values of another moment', (before) => {
+    const now = document.querySelector('[aria-label=Timers]')?.textContent;
+    return now && now !== before;
+  }, values);
+  await seek(8.5);
+  await page.getByRole('button', { name: 'Latest decisions' }).click();
   await whyNot(page, seek, time);
   assert.deepEqual(faults, []);
   await page.close();
