@@ -29,6 +29,8 @@
 pub mod agents;
 #[cfg(test)]
 mod decision_cases;
+#[cfg(test)]
+mod decision_tests;
 pub mod direct;
 mod evaluation;
 pub mod sources;

@@ -141,9 +141,9 @@ impl From<game::PlayerState> for PlayerState {
 }
 
 impl MotionRequest {
-    /// The request as input of the motion arbiter.
-    pub(crate) fn request(&self, age: Duration) -> PendingRequest {
-        let wish = match self.kind() {
+    /// The motion that is requested.
+    pub fn desired(&self) -> DesiredMotion {
+        match self.kind() {
             MotionKind::Stand => DesiredMotion::Stand,
             MotionKind::Walk => DesiredMotion::Walk(Walk { ahead: self.vx, left: self.vy, turn: self.wz }),
             MotionKind::KickLeft => DesiredMotion::Skill(Skill::KickLeft),
@@ -153,8 +153,12 @@ impl MotionRequest {
             MotionKind::DiveLeft => DesiredMotion::Skill(Skill::DiveLeft),
             MotionKind::DiveRight => DesiredMotion::Skill(Skill::DiveRight),
             MotionKind::StandUp => DesiredMotion::Skill(Skill::StandUp),
-        };
-        PendingRequest { wish, number: self.number, age }
+        }
+    }
+
+    /// The request as input of the motion arbiter.
+    pub(crate) fn request(&self, age: Duration) -> PendingRequest {
+        PendingRequest { wish: self.desired(), number: self.number, age }
     }
 }
 

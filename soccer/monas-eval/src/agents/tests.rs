@@ -7,13 +7,13 @@ use std::time::Duration;
 use monas::{Activity, Progress, Registry};
 use monas_match::{MatchOptions, MatchSource};
 use monas_soccer::functionality::head::Gaze;
-use monas_soccer::functionality::motion::{DesiredMotion, Skill};
-use monas_soccer::functionality::walk::Walk;
-use monas_soccer::{GameState, HeadMode, MotionKind, MotionState};
+use monas_soccer::functionality::motion::DesiredMotion;
+use monas_soccer::{GameState, HeadMode, MotionRequest, MotionState};
 use narukom::{Hub, Retention, Timestamp, Topic};
 
 use super::*;
-use crate::decision_cases::{Case, Decision, Look, Requests, game, goalie_cases, player_cases};
+use crate::decision_cases::{Case, Look, Requests, game, goalie_cases};
+use crate::decision_tests::{DecisionFixture, decision_tests, find};
 
 /// A behaviour, its blackboard, and one for all other agents of its robot.
 struct Fixture<A> {
@@ -23,18 +23,7 @@ struct Fixture<A> {
     others: Blackboard,
 }
 
-impl<A: Activity + Default> Fixture<A> {
-    /// A robot that stands, during play.
-    fn new() -> Fixture<A> {
-        let hub = Hub::with_linked_topics("robot").unwrap();
-        let [blackboard, others] = ["behaviour", "others"].map(|name| hub.blackboard(name));
-        let now = Timestamp::from_nanos(10_000_000_000);
-        let mut fixture = Fixture { behaviour: A::default(), now, blackboard, others };
-        fixture.publish(topics::GAME_STATE, game());
-        fixture.report(MotionPhase::Standing, 0);
-        fixture
-    }
-
+impl<A: Activity> Fixture<A> {
     fn publish<K: Retention>(&mut self, topic: Topic<K>, message: K::Message) {
         self.others.process_messages(self.now);
         self.others.publish(topic, message).unwrap();
@@ -43,22 +32,6 @@ impl<A: Activity + Default> Fixture<A> {
 
     fn report(&mut self, phase: MotionPhase, done: u64) {
         self.publish(topics::MOTION_STATE, MotionState { phase: phase.into(), done });
-    }
-
-    fn finish_motion(&mut self) {
-        let number = self.others.read(topics::MOTION).map_or(0, |request| request.number);
-        self.report(MotionPhase::Standing, number);
-    }
-
-    fn wait(&mut self, millis: u64) {
-        self.now += Duration::from_millis(millis);
-    }
-
-    /// Decides once on the inputs of a case.
-    fn decide(&mut self, case: &Case) -> Requests {
-        self.publish(topics::POSE, case.pose);
-        self.publish(topics::BALL, case.ball);
-        self.run()
     }
 
     /// Calls the behaviour once; returns what it requests.
@@ -74,19 +47,7 @@ impl<A: Activity + Default> Fixture<A> {
             HeadMode::Scan | HeadMode::Ahead => Look::Scan,
         });
         let request = self.others.read(topics::MOTION).filter(|_| after.1 != before.1);
-        let motion = request.map(|request| match request.kind() {
-            MotionKind::Stand => DesiredMotion::Stand,
-            MotionKind::Walk => {
-                DesiredMotion::Walk(Walk { ahead: request.vx, left: request.vy, turn: request.wz })
-            }
-            MotionKind::KickLeft => DesiredMotion::Skill(Skill::KickLeft),
-            MotionKind::KickRight => DesiredMotion::Skill(Skill::KickRight),
-            MotionKind::FallLeft => DesiredMotion::Skill(Skill::FallLeft),
-            MotionKind::FallRight => DesiredMotion::Skill(Skill::FallRight),
-            MotionKind::DiveLeft => DesiredMotion::Skill(Skill::DiveLeft),
-            MotionKind::DiveRight => DesiredMotion::Skill(Skill::DiveRight),
-            MotionKind::StandUp => DesiredMotion::Skill(Skill::StandUp),
-        });
+        let motion = request.map(MotionRequest::desired);
         (look, motion)
     }
 
@@ -98,64 +59,34 @@ impl<A: Activity + Default> Fixture<A> {
     }
 }
 
-fn find(cases: Vec<Case>, scenario: &str) -> Case {
-    cases.into_iter().find(|case| case.scenario == scenario).unwrap()
-}
+impl<A: Activity + Default> DecisionFixture for Fixture<A> {
+    fn new() -> Fixture<A> {
+        let hub = Hub::with_linked_topics("robot").unwrap();
+        let [blackboard, others] = ["behaviour", "others"].map(|name| hub.blackboard(name));
+        let now = Timestamp::from_nanos(10_000_000_000);
+        let mut fixture = Fixture { behaviour: A::default(), now, blackboard, others };
+        fixture.publish(topics::GAME_STATE, game());
+        fixture.report(MotionPhase::Standing, 0);
+        fixture
+    }
 
-#[test]
-fn goalie_decides_as_in_the_scenarios() {
-    for case in goalie_cases() {
-        case.assert(Fixture::<BehaviorGoalie>::new().decide(&case));
+    fn finish_motion(&mut self) {
+        let number = self.others.read(topics::MOTION).map_or(0, |request| request.number);
+        self.report(MotionPhase::Standing, number);
+    }
+
+    fn wait(&mut self, millis: u64) {
+        self.now += Duration::from_millis(millis);
+    }
+
+    fn decide(&mut self, case: &Case) -> Requests {
+        self.publish(topics::POSE, case.pose);
+        self.publish(topics::BALL, case.ball);
+        self.run()
     }
 }
 
-#[test]
-fn player_decides_as_in_the_scenarios() {
-    for case in player_cases() {
-        case.assert(Fixture::<BehaviorPlayer>::new().decide(&case));
-    }
-}
-
-#[test]
-fn goalie_decides_again_when_its_dive_is_over() {
-    let mut fixture = Fixture::<BehaviorGoalie>::new();
-    let (dive, search) = (find(goalie_cases(), "dive_left"), find(goalie_cases(), "search"));
-    dive.assert(fixture.decide(&dive));
-    fixture.wait(100);
-    assert_eq!(fixture.decide(&search), (None, None));
-    fixture.finish_motion();
-    search.assert(fixture.decide(&search));
-    dive.assert(fixture.decide(&dive));
-}
-
-#[test]
-fn player_decides_again_when_its_kick_is_over() {
-    let mut fixture = Fixture::<BehaviorPlayer>::new();
-    let (kick, search) = (find(player_cases(), "kick_left"), find(player_cases(), "search"));
-    kick.assert(fixture.decide(&kick));
-    fixture.wait(100);
-    assert_eq!(fixture.decide(&search), (None, None));
-    fixture.finish_motion();
-    search.assert(fixture.decide(&search));
-    kick.assert(fixture.decide(&kick));
-}
-
-#[test]
-fn player_glances_for_a_moment_and_not_again_soon() {
-    let mut fixture = Fixture::<BehaviorPlayer>::new();
-    let glance = find(player_cases(), "look_at_goal");
-    let walk = Case { decision: Decision::WalkTowardsBall, ..glance };
-    for _ in 0..2 {
-        glance.assert(fixture.decide(&glance));
-        fixture.wait(300);
-        assert_eq!(fixture.decide(&glance), (None, None));
-        fixture.wait(100);
-        walk.assert(fixture.decide(&glance));
-        fixture.wait(1000);
-        walk.assert(fixture.decide(&glance));
-        fixture.wait(1600);
-    }
-}
+decision_tests!(Fixture<BehaviorGoalie>, Fixture<BehaviorPlayer>);
 
 #[test]
 fn goalie_plays() {

@@ -6,7 +6,8 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use monas_robot::{GamePhase, Posture};
 
 use super::*;
-use crate::decision_cases::{Case, Decision, Look, Requests, game, goalie_cases, player_cases};
+use crate::decision_cases::{Case, Look, Requests, game};
+use crate::decision_tests::{DecisionFixture, decision_tests};
 
 const TICK: Duration = Duration::from_millis(20);
 
@@ -38,41 +39,7 @@ struct Fixture<B> {
     percepts: Percepts,
 }
 
-impl<B: Behaviour + Default> Fixture<B> {
-    fn new() -> Fixture<B> {
-        let commands = Arc::new(AtomicU32::new(0));
-        let body = StandingBody { anatomy: Anatomy::new("test", TICK), commands: Arc::clone(&commands) };
-        let mut robot = DirectRobot::new(Box::new(body), B::default());
-        robot.memory.now = Timestamp::from_nanos(10_000_000_000);
-        robot.memory.game = game();
-        let mut percepts = Percepts::default();
-        percepts.sensors.posture = Posture::Standing.into();
-        Fixture { robot, commands, percepts }
-    }
-
-    /// Decides once on the inputs of a case.
-    fn decide(&mut self, case: &Case) -> Requests {
-        let memory = &mut self.robot.memory;
-        (memory.ball, memory.pose) = (case.ball, Some(case.pose));
-        // A time before all others marks that nothing was requested.
-        (memory.gaze, memory.requested_at) = (GazeRequest::Ahead, Timestamp::default());
-        self.robot.behaviour.decide(memory);
-        let look = match memory.gaze {
-            GazeRequest::Ahead => None,
-            GazeRequest::Scan => Some(Look::Scan),
-            GazeRequest::At(gaze) => Some(Look::At(gaze)),
-        };
-        (look, (memory.requested_at == memory.now).then_some(memory.motion))
-    }
-
-    fn wait(&mut self, millis: u64) {
-        self.robot.memory.now += Duration::from_millis(millis);
-    }
-
-    fn finish_motion(&mut self) {
-        self.robot.memory.motion_done = self.robot.memory.motion_number;
-    }
-
+impl<B: Behaviour> Fixture<B> {
     /// The referee announces a phase.
     fn announce(&mut self, phase: GamePhase) {
         let announced = Announcement { phase: phase.into(), ..Announcement::default() };
@@ -94,64 +61,42 @@ impl<B: Behaviour + Default> Fixture<B> {
     }
 }
 
-fn find(cases: Vec<Case>, scenario: &str) -> Case {
-    cases.into_iter().find(|case| case.scenario == scenario).unwrap()
-}
+impl<B: Behaviour + Default> DecisionFixture for Fixture<B> {
+    fn new() -> Fixture<B> {
+        let commands = Arc::new(AtomicU32::new(0));
+        let body = StandingBody { anatomy: Anatomy::new("test", TICK), commands: Arc::clone(&commands) };
+        let mut robot = DirectRobot::new(Box::new(body), B::default());
+        robot.memory.now = Timestamp::from_nanos(10_000_000_000);
+        robot.memory.game = game();
+        let mut percepts = Percepts::default();
+        percepts.sensors.posture = Posture::Standing.into();
+        Fixture { robot, commands, percepts }
+    }
 
-#[test]
-fn goalie_decides_as_in_the_scenarios() {
-    for case in goalie_cases() {
-        case.assert(Fixture::<DirectGoalie>::new().decide(&case));
+    fn decide(&mut self, case: &Case) -> Requests {
+        let memory = &mut self.robot.memory;
+        (memory.ball, memory.pose) = (case.ball, Some(case.pose));
+        // A time before all others marks that nothing was requested.
+        (memory.gaze, memory.requested_at) = (GazeRequest::Ahead, Timestamp::default());
+        self.robot.behaviour.decide(memory);
+        let look = match memory.gaze {
+            GazeRequest::Ahead => None,
+            GazeRequest::Scan => Some(Look::Scan),
+            GazeRequest::At(gaze) => Some(Look::At(gaze)),
+        };
+        (look, (memory.requested_at == memory.now).then_some(memory.motion))
+    }
+
+    fn wait(&mut self, millis: u64) {
+        self.robot.memory.now += Duration::from_millis(millis);
+    }
+
+    fn finish_motion(&mut self) {
+        self.robot.memory.motion_done = self.robot.memory.motion_number;
     }
 }
 
-#[test]
-fn player_decides_as_in_the_scenarios() {
-    for case in player_cases() {
-        case.assert(Fixture::<DirectPlayer>::new().decide(&case));
-    }
-}
-
-#[test]
-fn goalie_decides_again_when_its_dive_is_over() {
-    let mut fixture = Fixture::<DirectGoalie>::new();
-    let (dive, search) = (find(goalie_cases(), "dive_left"), find(goalie_cases(), "search"));
-    dive.assert(fixture.decide(&dive));
-    fixture.wait(100);
-    assert_eq!(fixture.decide(&search), (None, None));
-    fixture.finish_motion();
-    search.assert(fixture.decide(&search));
-    dive.assert(fixture.decide(&dive));
-}
-
-#[test]
-fn player_decides_again_when_its_kick_is_over() {
-    let mut fixture = Fixture::<DirectPlayer>::new();
-    let (kick, search) = (find(player_cases(), "kick_left"), find(player_cases(), "search"));
-    kick.assert(fixture.decide(&kick));
-    fixture.wait(100);
-    assert_eq!(fixture.decide(&search), (None, None));
-    fixture.finish_motion();
-    search.assert(fixture.decide(&search));
-    kick.assert(fixture.decide(&kick));
-}
-
-#[test]
-fn player_glances_for_a_moment_and_not_again_soon() {
-    let mut fixture = Fixture::<DirectPlayer>::new();
-    let glance = find(player_cases(), "look_at_goal");
-    let walk = Case { decision: Decision::WalkTowardsBall, ..glance };
-    for _ in 0..2 {
-        glance.assert(fixture.decide(&glance));
-        fixture.wait(300);
-        assert_eq!(fixture.decide(&glance), (None, None));
-        fixture.wait(100);
-        walk.assert(fixture.decide(&glance));
-        fixture.wait(1000);
-        walk.assert(fixture.decide(&glance));
-        fixture.wait(1600);
-    }
-}
+decision_tests!(Fixture<DirectGoalie>, Fixture<DirectPlayer>);
 
 #[test]
 fn goalie_plays() {
