@@ -211,6 +211,14 @@ impl Statechart {
         self.parts.nodes.iter().enumerate().map(|(index, node)| (NodeId(index as u32), node))
     }
 
+    /// Whether a step considers the transitions out of a node: it is active, or it is a condition,
+    /// junction or choice in an active composite.
+    pub fn is_considered(&self, source: NodeId, is_active: impl Fn(NodeId) -> bool) -> bool {
+        let node = self.node(source);
+        let branches = matches!(node.kind, NodeKind::Condition | NodeKind::Junction | NodeKind::Choice);
+        is_active(source) || branches && node.parent.is_some_and(is_active)
+    }
+
     /// All transitions, in the order they were added.
     pub fn transitions(&self) -> impl ExactSizeIterator<Item = (TransitionId, &Transition)> {
         self.parts

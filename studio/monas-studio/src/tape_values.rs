@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use monas::records::Delivery;
 use narukom::topic_hash;
 use serde_json::{Value, json};
-use yase::{NodeId, NodeKind, ScopeId, StateNames, Statechart, Transition, TransitionId};
+use yase::{NodeId, ScopeId, StateNames, Transition};
 
 use crate::chart_view::seconds;
 use crate::read_value::ReadMoment;
@@ -29,7 +29,10 @@ impl TapeRun {
         let steps = history.until(count);
         let moment = |scope| ReadMoment { chart, scope, count, is_step: false, time, steps };
         let (mut guards, mut timers) = (Vec::new(), BTreeMap::new());
-        for (id, transition) in considered(statechart, active) {
+        let is_active = |node: NodeId| active.contains(&node.0);
+        let considered =
+            |(_, transition): &(_, &Transition)| statechart.is_considered(transition.source, is_active);
+        for (id, transition) in statechart.transitions().filter(considered) {
             let scope = scopes.get(transition.source.0 as usize).copied().unwrap_or(ScopeId::ROOT);
             let Some(guard) = &transition.expression.guard else { continue };
             let moment = moment(scope);
@@ -76,18 +79,4 @@ impl TapeRun {
         });
         scopes.collect()
     }
-}
-
-/// The transitions out of active states, and the segments out of conditions, junctions and choices
-/// in active composites.
-fn considered<'a>(
-    chart: &'a Statechart,
-    active: &'a BTreeSet<u32>,
-) -> impl Iterator<Item = (TransitionId, &'a Transition)> {
-    chart.transitions().filter(|(_, transition)| {
-        let node = chart.node(transition.source);
-        let branches = matches!(node.kind, NodeKind::Condition | NodeKind::Junction | NodeKind::Choice);
-        active.contains(&transition.source.0)
-            || branches && node.parent.is_some_and(|parent| active.contains(&parent.0))
-    })
 }
