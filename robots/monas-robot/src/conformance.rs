@@ -2,7 +2,7 @@
 
 use narukom::Timestamp;
 
-use crate::{Actuators, ErrorKind, JointCommands, Joints, Percepts, Posture, Robot, Sensors};
+use crate::{Actuators, ErrorKind, JointCommands, Joints, Percepts, Posture, Robot, Sensors, SkillResult};
 
 /// How far a measured joint may lie beyond its limits, radians: the encoders are not perfect.
 const JOINT_TOLERANCE: f64 = 0.02;
@@ -164,6 +164,8 @@ fn sense(robot: &mut dyn Robot, now: Timestamp, percepts: &mut Percepts) {
         sensors.odometry_turn,
     ];
     assert!(felt.iter().all(|value| value.is_finite()), "a sensor is no number: {sensors:?}");
+    let has_result = sensors.skill_result() != SkillResult::NoResult;
+    assert_eq!(sensors.skill_done != 0, has_result, "the end of a skill has a result: {sensors:?}");
     check_joints(robot, percepts.joints.as_ref(), now);
     for sighting in percepts.sightings.iter().flat_map(|sightings| &sightings.objects) {
         assert!(

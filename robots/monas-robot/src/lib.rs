@@ -43,6 +43,7 @@
 mod anatomy;
 mod body_kind;
 pub mod conformance;
+mod fall_detector;
 mod joint_targets;
 mod robot;
 pub mod topics;
@@ -55,6 +56,7 @@ pub use body_kind::{
     BodyKind, BodyLimit, BodyOption, BodySettings, BodySite, CameraOutput, Capability, OpenBody, OptionKind,
     Surroundings,
 };
+pub use fall_detector::FallDetector;
 pub use joint_targets::JointTargets;
 pub use robot::{Error, ErrorKind, Percepts, Robot};
 pub use wrapped_body::{Disturbances, WrappedBody};

@@ -2,8 +2,8 @@
 //! sensor packets become percepts.
 
 use monas_robot::{
-    Actuators, Anatomy, Battery, Contacts, Error, Inertial, JointCommands, JointTargets, Joints, Leds,
-    Percepts, Posture, Sensors, Skill, Sonar,
+    Actuators, Anatomy, Battery, Contacts, Error, FallDetector, Inertial, JointCommands, JointTargets,
+    Joints, Leds, Percepts, Posture, Sensors, Skill, SkillResult, Sonar,
 };
 use narukom::Timestamp;
 
@@ -20,10 +20,8 @@ const STIFFNESS: f64 = 0.8;
 const STIFFENING: f64 = 1.0;
 /// The time in which the joints lose their stiffness, s.
 const RELAXING: f64 = 0.5;
-/// A torso that is more inclined than this lies, rad.
-const LYING: f64 = 1.0;
-/// A torso that is less inclined than this is upright, rad.
-const UPRIGHT: f64 = 0.3;
+/// A joint that is farther than this from the last pose of a skill has not performed it, rad.
+const POSE_TOLERANCE: f64 = 0.3;
 /// Less weight than this on both soles, kg, and the feet are off the ground.
 const LEAST_WEIGHT: f64 = 0.5;
 
@@ -50,6 +48,8 @@ pub(crate) struct NaoControl {
     commands: Actuators,
     skill_number: u64,
     skill_done: u64,
+    skill_result: SkillResult,
+    falls: FallDetector,
     targets: JointTargets,
     leds: Leds,
     sensors: SensorPacket,
@@ -71,6 +71,8 @@ impl NaoControl {
             commands: Actuators::default(),
             skill_number: 0,
             skill_done: 0,
+            skill_result: SkillResult::NoResult,
+            falls: FallDetector::default(),
             targets: JointTargets::default(),
             leds: Leds::default(),
             sensors: SensorPacket::default(),
@@ -104,7 +106,9 @@ impl NaoControl {
                 Activity::Stiffening { motion: Motion::stand(measured, STIFFENING), elapsed: 0.0 };
         }
         self.measured_before = std::mem::replace(&mut self.measured, measured);
-        if self.has_weight() && self.tilt() < UPRIGHT {
+        let [roll, pitch] = packet.angles.map(f64::from);
+        self.falls.measure(roll, pitch);
+        if self.has_weight() && !self.falls.is_inclined() {
             let [x, y, turn] = displacement(&self.measured_before, &self.measured);
             let [before_x, before_y, heading] = self.odometry;
             let (sin, cos) = libm::sincos(heading);
@@ -129,14 +133,14 @@ impl NaoControl {
     /// Advances the motion by one cycle; returns the stiffness, and whether the joints only repeat
     /// where they are.
     fn advance(&mut self) -> (f64, bool) {
-        let tilt = self.tilt();
+        let falls = self.falls;
         let seconds = CYCLE_SECONDS;
         match &mut self.activity {
             Activity::Waiting => (0.0, true),
             Activity::Stiffening { motion, elapsed } => {
                 *elapsed += seconds;
                 let part = (*elapsed / STIFFENING).min(1.0);
-                if motion.advance(seconds, tilt, &mut self.angles) {
+                if motion.advance(seconds, falls, &mut self.angles) {
                     self.activity = Activity::Active { skill: None };
                 }
                 (part * STIFFNESS, false)
@@ -145,7 +149,7 @@ impl NaoControl {
                 self.move_head();
                 let Actuators { walk_x, walk_y, walk_turn, .. } = self.commands;
                 let mut velocity = WalkVelocity { x: walk_x, y: walk_y, turn: walk_turn };
-                if tilt > UPRIGHT {
+                if falls.is_inclined() {
                     self.walk.stop();
                     velocity = WalkVelocity::STILL;
                 }
@@ -153,16 +157,18 @@ impl NaoControl {
                 (STIFFNESS, false)
             }
             Activity::Active { skill: Some((_, motion)) } => {
-                if motion.advance(seconds, tilt, &mut self.angles) {
-                    self.skill_done = self.skill_number;
-                    self.walk.stop();
-                    self.activity = Activity::Active { skill: None };
+                if motion.advance(seconds, falls, &mut self.angles) {
+                    let is_performed = motion.is_performed(falls) && self.is_in_pose();
+                    self.end_skill(match is_performed {
+                        true => SkillResult::Performed,
+                        false => SkillResult::Interrupted,
+                    });
                 }
                 self.move_head();
                 (STIFFNESS, false)
             }
             Activity::SittingDown { motion } => {
-                if motion.advance(seconds, tilt, &mut self.angles) || tilt > UPRIGHT {
+                if motion.advance(seconds, falls, &mut self.angles) || falls.is_inclined() {
                     self.activity = Activity::Relaxing { elapsed: 0.0 };
                 }
                 (STIFFNESS, false)
@@ -195,8 +201,20 @@ impl NaoControl {
         match (&mut self.activity, Motion::of(wanted, self.angles)) {
             (Activity::Active { skill: skill @ None }, Some(motion)) => *skill = Some((wanted, motion)),
             (Activity::Active { skill: Some(_) }, _) => {}
-            _ => self.skill_done = number,
+            _ => (self.skill_done, self.skill_result) = (number, SkillResult::Refused),
         }
+    }
+
+    fn end_skill(&mut self, result: SkillResult) {
+        (self.skill_done, self.skill_result) = (self.skill_number, result);
+        self.walk.stop();
+        self.activity = Activity::Active { skill: None };
+    }
+
+    /// Whether the joints that skills move are where they are commanded to be.
+    fn is_in_pose(&self) -> bool {
+        let joints = self.measured.iter().zip(&self.angles).skip(NaoJoint::LShoulderPitch as usize);
+        joints.into_iter().all(|(measured, commanded)| (measured - commanded).abs() < POSE_TOLERANCE)
     }
 
     pub(crate) fn command_joints(&mut self, commands: &JointCommands) -> Result<(), Error> {
@@ -229,24 +247,18 @@ impl NaoControl {
         matches!(self.activity, Activity::Relaxing { elapsed } if elapsed >= RELAXING)
     }
 
-    fn tilt(&self) -> f64 {
-        let [roll, pitch] = self.sensors.angles.map(|angle| f64::from(angle).abs());
-        roll.max(pitch)
-    }
-
     fn has_weight(&self) -> bool {
         self.sensors.fsr.iter().copied().map(f64::from).sum::<f64>() >= LEAST_WEIGHT
     }
 
     fn posture(&self) -> Posture {
-        let tilt = self.tilt();
         match &self.activity {
             Activity::Waiting => Posture::Unknown,
             Activity::Active { skill: Some((Skill::StandUp, _)) } => Posture::StandingUp,
             Activity::Active { skill: Some(_) } => Posture::Busy,
-            _ if tilt > LYING => Posture::Fallen,
+            _ if self.falls.is_fallen() => Posture::Fallen,
             Activity::SittingDown { .. } | Activity::Relaxing { .. } => Posture::Sitting,
-            _ if tilt > UPRIGHT => Posture::Busy,
+            _ if self.falls.is_inclined() => Posture::Busy,
             _ if !self.has_weight() => Posture::Lifted,
             Activity::Stiffening { .. } => Posture::Busy,
             Activity::Active { skill: None } if self.walk.is_moving() => Posture::Walking,
@@ -277,6 +289,7 @@ impl NaoControl {
             right_bumper,
             posture: self.posture() as i32,
             skill_done: self.skill_done,
+            skill_result: self.skill_result as i32,
             battery: packet.battery[0].into(),
             relaxed: packet.stiffness.iter().all(|&stiffness| stiffness <= 0.0),
         };

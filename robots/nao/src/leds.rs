@@ -17,8 +17,8 @@ pub(crate) fn set(packet: &mut ActuatorPacket, commands: &Actuators, leds: &Leds
     eye(&mut packet.left_eye, &leds.left_eye, commands.left_eye);
     eye(&mut packet.right_eye, &leds.right_eye, commands.right_eye);
     packet.chest = components(leds.chest.first().copied().unwrap_or(commands.chest));
-    packet.left_foot = components(leds.left_foot.first().copied().unwrap_or_default());
-    packet.right_foot = components(leds.right_foot.first().copied().unwrap_or_default());
+    packet.left_foot = components(leds.left_foot.first().copied().unwrap_or(commands.left_foot));
+    packet.right_foot = components(leds.right_foot.first().copied().unwrap_or(commands.right_foot));
     brightness(&mut packet.left_ear, &leds.left_ear);
     brightness(&mut packet.right_ear, &leds.right_ear);
     brightness(&mut packet.skull, &leds.skull);
@@ -68,11 +68,17 @@ mod tests {
     #[test]
     fn an_eye_is_all_reds_then_all_greens_then_all_blues() {
         let mut packet = ActuatorPacket::default();
-        let commands = Actuators { left_eye: 0xff_80_00, chest: 0x00_00_ff, ..Actuators::default() };
+        let commands = Actuators {
+            left_eye: 0xff_80_00,
+            chest: 0x00_00_ff,
+            left_foot: 0xff0000,
+            ..Actuators::default()
+        };
         set(&mut packet, &commands, &Leds::default());
         assert_eq!(packet.left_eye[..8], [1.0; 8]);
         assert!(packet.left_eye[8..16].iter().all(|green| (green - 0.502).abs() < 1e-3));
         assert_eq!((&packet.left_eye[16..], packet.chest), (&[0.0; 8][..], [0.0, 0.0, 1.0]));
+        assert_eq!((packet.left_foot, packet.right_foot), ([1.0, 0.0, 0.0], [0.0; 3]));
     }
 
     #[test]

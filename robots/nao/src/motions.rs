@@ -1,6 +1,6 @@
 //! Skills as motions of the joints: poses at times.
 
-use monas_robot::Skill;
+use monas_robot::{FallDetector, Skill};
 use nalgebra::Isometry3;
 
 use crate::anatomy::NaoJoint;
@@ -129,7 +129,7 @@ impl Motion {
     }
 
     /// Advances by one cycle and sets all joints except the head's. Returns whether it is over.
-    pub(crate) fn advance(&mut self, seconds: f64, tilt: f64, angles: &mut JointAngles) -> bool {
+    pub(crate) fn advance(&mut self, seconds: f64, falls: FallDetector, angles: &mut JointAngles) -> bool {
         self.elapsed += seconds;
         while let Some(frame) = self.frames.get(self.frame)
             && self.elapsed >= frame.seconds
@@ -147,9 +147,18 @@ impl Motion {
         self.frame == self.frames.len()
             && match self.end {
                 MotionEnd::AtLastPose => true,
-                MotionEnd::WhenUpright { at_most } => tilt < 0.2 || self.elapsed >= at_most,
-                MotionEnd::WhenLying { at_most } => tilt > 1.2 || self.elapsed >= at_most,
+                MotionEnd::WhenUpright { at_most } | MotionEnd::WhenLying { at_most } => {
+                    self.is_performed(falls) || self.elapsed >= at_most
+                }
             }
+    }
+
+    /// Whether the torso is inclined as after the whole motion.
+    pub(crate) fn is_performed(&self, falls: FallDetector) -> bool {
+        match self.end {
+            MotionEnd::WhenLying { .. } => falls.is_fallen(),
+            MotionEnd::AtLastPose | MotionEnd::WhenUpright { .. } => !falls.is_inclined(),
+        }
     }
 }
 
@@ -186,13 +195,15 @@ mod tests {
 
     #[test]
     fn motions_stay_within_the_limits_and_end() {
+        let mut falls = FallDetector::default();
+        falls.measure(0.0, 0.5);
         let mut motions: Vec<Motion> =
             SKILLS.iter().filter_map(|&skill| Motion::of(skill, stand())).collect();
         motions.extend([Motion::sit_down(stand()), Motion::stand(sitting(), 1.0)]);
         for mut motion in motions {
             let mut angles = stand();
             let mut cycles = 0;
-            while !motion.advance(CYCLE_SECONDS, 0.5, &mut angles) {
+            while !motion.advance(CYCLE_SECONDS, falls, &mut angles) {
                 cycles += 1;
                 assert!(cycles < 600, "{motion:?} does not end");
                 for (joint, &angle) in angles.iter().enumerate().skip(2) {

@@ -2,8 +2,8 @@
 //! percepts of the server become percepts of the body.
 
 use monas_robot::{
-    Actuators, Anatomy, Error, Inertial, JointCommands, JointTargets, Joints, ObjectKind, Percepts, Posture,
-    Sensors, Sighting, Sightings, Skill,
+    Actuators, Anatomy, Error, FallDetector, Inertial, JointCommands, JointTargets, Joints, ObjectKind,
+    Percepts, Posture, Sensors, Sighting, Sightings, Skill, SkillResult,
 };
 use narukom::Timestamp;
 
@@ -16,10 +16,6 @@ use crate::match_rules::MatchRules;
 use crate::percept::{Percept, Sight};
 use crate::walk::{Gait, Motion, Motors, Ramp, WalkEngine, WalkVelocity};
 
-/// A torso that is more inclined than this has fallen, rad.
-const LYING: f64 = 1.0;
-/// A torso that is less inclined than this is upright, rad.
-const UPRIGHT: f64 = 0.4;
 /// Torque per angle and per angular velocity of a joint of a leg, and of another one, that is
 /// commanded by itself with a stiffness of 1.
 const GAINS: [(f64, f64); 2] = [(200.0, 5.0), (20.0, 1.0)];
@@ -53,11 +49,12 @@ pub(crate) struct T1Control {
     commands: Actuators,
     skill_number: u64,
     skill_done: u64,
+    skill_result: SkillResult,
     targets: JointTargets,
     inertia: Inertia,
     stance: Stance,
     percept: Percept,
-    is_fallen: bool,
+    falls: FallDetector,
     odometry: [f64; 3],
     motors: Motors,
     sightings: Sightings,
@@ -79,11 +76,12 @@ impl T1Control {
             commands: Actuators::default(),
             skill_number: 0,
             skill_done: 0,
+            skill_result: SkillResult::NoResult,
             targets: JointTargets::default(),
             stance: Stance::new(&[0.0; JOINTS], &inertia.down()),
             inertia,
             percept: Percept::default(),
-            is_fallen: false,
+            falls: FallDetector::default(),
             odometry: [0.0; 3],
             motors: [MotorCommand::default(); JOINTS],
             sightings: Sightings::default(),
@@ -106,9 +104,9 @@ impl T1Control {
         self.inertia.advance(self.percept.gyro, self.percept.acceleration, CYCLE_SECONDS);
         let before =
             std::mem::replace(&mut self.stance, Stance::new(&self.percept.positions, &self.inertia.down()));
-        let tilt = self.tilt();
-        self.is_fallen = tilt > LYING || (self.is_fallen && tilt > UPRIGHT);
-        if tilt < UPRIGHT {
+        let (roll, pitch) = inclination(&self.inertia.down());
+        self.falls.measure(roll, pitch);
+        if !self.falls.is_inclined() {
             self.measure_step(&before);
         }
         if self.percept.has_sights {
@@ -121,11 +119,13 @@ impl T1Control {
     pub(crate) fn placed(&mut self) {
         self.inertia = Inertia::default();
         self.stance = Stance::new(&self.percept.positions, &self.inertia.down());
-        self.is_fallen = false;
+        self.falls = FallDetector::default();
         self.ramp.reset();
         self.walk.reset();
-        if self.activity != Activity::Resting {
-            self.end_skill();
+        match self.activity {
+            Activity::Resting | Activity::Walking => {}
+            Activity::Kicking => self.end_skill(SkillResult::Interrupted),
+            Activity::Waiting => self.end_skill(SkillResult::Performed),
         }
     }
 
@@ -187,7 +187,7 @@ impl T1Control {
                 if let Some(kick) = &mut self.kick
                     && !kick.advance(&motion, &mut self.motors)
                 {
-                    self.end_skill();
+                    self.end_skill(SkillResult::Performed);
                 }
                 self.move_head();
                 self.move_joints();
@@ -207,7 +207,7 @@ impl T1Control {
     fn wanted(&self) -> Option<WalkVelocity> {
         match self.activity {
             Activity::Resting | Activity::Waiting => None,
-            _ if self.is_fallen => None,
+            _ if self.is_fallen() => None,
             Activity::Walking => {
                 let Actuators { walk_x, walk_y, walk_turn, .. } = self.commands;
                 Some(WalkVelocity { x: walk_x, y: walk_y, turn: walk_turn })
@@ -217,9 +217,9 @@ impl T1Control {
     }
 
     /// Ends a kick, or the time in which the robot waits.
-    fn end_skill(&mut self) {
+    fn end_skill(&mut self, result: SkillResult) {
         self.kick = None;
-        self.skill_done = self.skill_number;
+        (self.skill_done, self.skill_result) = (self.skill_number, result);
         self.activity = Activity::Walking;
     }
 
@@ -256,14 +256,14 @@ impl T1Control {
         }
         self.skill_number = number;
         self.activity = match (self.activity, skill) {
-            (Activity::Walking, Skill::KickLeft | Skill::KickRight) if !self.is_fallen => {
+            (Activity::Walking, Skill::KickLeft | Skill::KickRight) if !self.is_fallen() => {
                 let foot = if skill == Skill::KickLeft { Foot::Left } else { Foot::Right };
                 self.kick = Some(Kick::new(self.kick_parameters, foot));
                 Activity::Kicking
             }
-            (Activity::Walking, Skill::StandUp) if self.is_fallen => Activity::Waiting,
+            (Activity::Walking, Skill::StandUp) if self.is_fallen() => Activity::Waiting,
             (Activity::Walking, _) => {
-                self.skill_done = number;
+                (self.skill_done, self.skill_result) = (number, SkillResult::Refused);
                 Activity::Walking
             }
             (busy, _) => busy,
@@ -284,21 +284,16 @@ impl T1Control {
 
     /// Whether the robot lies.
     pub(crate) fn is_fallen(&self) -> bool {
-        self.is_fallen
-    }
-
-    fn tilt(&self) -> f64 {
-        let (roll, pitch) = inclination(&self.inertia.down());
-        roll.abs().max(pitch.abs())
+        self.falls.is_fallen()
     }
 
     fn posture(&self) -> Posture {
         match self.activity {
             Activity::Waiting => Posture::StandingUp,
-            _ if self.is_fallen => Posture::Fallen,
+            _ if self.is_fallen() => Posture::Fallen,
             Activity::Resting => Posture::Sitting,
             Activity::Kicking => Posture::Busy,
-            Activity::Walking if self.tilt() > UPRIGHT => Posture::Busy,
+            Activity::Walking if self.falls.is_inclined() => Posture::Busy,
             Activity::Walking if self.ramp.velocity() != WalkVelocity::default() => Posture::Walking,
             Activity::Walking => Posture::Standing,
         }
@@ -321,6 +316,7 @@ impl T1Control {
             odometry_turn,
             posture: self.posture() as i32,
             skill_done: self.skill_done,
+            skill_result: self.skill_result as i32,
             battery: 1.0,
             relaxed: self.motors.iter().all(|motor| motor.stiffness <= 0.0),
             ..Sensors::default()

@@ -13,7 +13,6 @@ use monas_robot::{Actuators, Anatomy, Announcement, Error, Percepts, Robot, Sens
 use monas_soccer::functionality::field::FieldModel;
 use monas_soccer::functionality::game::{GameTracker, PlayerState};
 use monas_soccer::functionality::head::{Gaze, HeadController};
-use monas_soccer::functionality::lights;
 use monas_soccer::functionality::motion::{DesiredMotion, MotionArbiter, PendingRequest, Posture};
 use monas_soccer::functionality::walk::GaitLimits;
 use monas_soccer::perception::{Perception, PerceptionModel};
@@ -222,11 +221,8 @@ impl<B: Behaviour> DirectRobot<B> {
 
     fn set_lights(&mut self) {
         let memory = &mut self.memory;
-        memory.lights = LedRequest {
-            chest: lights::chest(memory.game.state()),
-            left_eye: lights::ball_eye(memory.ball.found),
-            right_eye: lights::pose_eye(memory.pose.map_or(0.0, |pose| pose.confidence)),
-        };
+        let confidence = memory.pose.map_or(0.0, |pose| pose.confidence);
+        memory.lights = convert::lights(Some(&memory.game), memory.ball.found, confidence);
     }
 
     /// Stands up before the first decision, and begins perception anew once it stands.

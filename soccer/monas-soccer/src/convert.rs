@@ -4,6 +4,7 @@ use std::time::Duration;
 
 use monas_robot::{
     Actuators, Announcement, GamePhase, ObjectKind, Posture as BodyPosture, Sighting, Skill as BodySkill,
+    SkillResult,
 };
 use nalgebra::{Isometry2, Point2, Vector2};
 
@@ -12,14 +13,15 @@ use crate::functionality::field::{FieldModel, Goal};
 use crate::functionality::game;
 use crate::functionality::geometry::{self, heading};
 use crate::functionality::interception::Crossing;
+use crate::functionality::lights;
 use crate::functionality::localisation::{GoalPost, Localisation, PostSighting};
 use crate::functionality::motion::{
-    BodyReport, DesiredMotion, MotionCommand, PendingRequest, Posture, Skill,
+    BodyReport, DesiredMotion, MotionCommand, PendingRequest, Posture, Skill, SkillEnd,
 };
 use crate::functionality::walk::Walk;
 use crate::{
-    Ball, Colour, GameState, LedRequest, MotionKind, MotionRequest, OtherRobot, PlayerState, Pose,
-    SensorEntry,
+    Ball, Colour, GameState, LedRequest, MotionKind, MotionRequest, MotionResult, OtherRobot, PlayerState,
+    Pose, SensorEntry,
 };
 
 /// `time_to_cross` of a ball that will not cross, seconds.
@@ -184,7 +186,26 @@ pub fn report(sensors: &monas_robot::Sensors) -> BodyReport {
         BodyPosture::Fallen => Posture::Fallen,
         BodyPosture::Lifted => Posture::Lifted,
     };
-    BodyReport { posture, skill_done: sensors.skill_done }
+    BodyReport { posture, skill_done: sensors.skill_done, skill_end: skill_end(sensors.skill_result()) }
+}
+
+fn skill_end(result: SkillResult) -> Option<SkillEnd> {
+    match result {
+        SkillResult::NoResult => None,
+        SkillResult::Performed => Some(SkillEnd::Performed),
+        SkillResult::Refused => Some(SkillEnd::Refused),
+        SkillResult::Interrupted => Some(SkillEnd::Interrupted),
+    }
+}
+
+/// How the last request for a skill ended, as its message says it.
+pub fn motion_result(end: Option<SkillEnd>) -> MotionResult {
+    match end {
+        None => MotionResult::NoResult,
+        Some(SkillEnd::Performed) => MotionResult::Performed,
+        Some(SkillEnd::Refused) => MotionResult::Refused,
+        Some(SkillEnd::Interrupted) => MotionResult::Interrupted,
+    }
 }
 
 /// The motion since the sensors' previous message: the new pose in the old frame.
@@ -233,6 +254,41 @@ pub fn actuators(order: &MotionCommand, (head_yaw, head_pitch): (f64, f64), ligh
         left_eye: lights.left_eye,
         right_eye: lights.right_eye,
         chest: lights.chest,
+        left_foot: lights.left_foot,
+        right_foot: lights.right_foot,
+    }
+}
+
+/// The colours that show the state of a player: its game, if it knows it, whether it has found the
+/// ball, and the confidence of its pose.
+pub fn lights(game: Option<&GameState>, has_ball: bool, confidence: f64) -> LedRequest {
+    let eyes = LedRequest {
+        left_eye: lights::ball_eye(has_ball),
+        right_eye: lights::pose_eye(confidence),
+        ..LedRequest::default()
+    };
+    let Some(game) = game else { return eyes };
+    LedRequest {
+        chest: lights::chest(game.state()),
+        left_foot: team_light(game.team_colour()),
+        right_foot: lights::kick_off_foot(game.state(), game.kick_off_own),
+        ..eyes
+    }
+}
+
+/// The light of a team's colour; dark for one that is unknown, and for black.
+fn team_light(colour: Colour) -> lights::Rgb {
+    match colour {
+        Colour::NoColour | Colour::Black => lights::OFF,
+        Colour::Blue => 0x0000ff,
+        Colour::Red => 0xff0000,
+        Colour::Yellow => 0xffff00,
+        Colour::Green => 0x00ff00,
+        Colour::White => 0xffffff,
+        Colour::Orange => 0xff8000,
+        Colour::Purple => 0x8000ff,
+        Colour::Brown => 0x804000,
+        Colour::Gray => 0x808080,
     }
 }
 

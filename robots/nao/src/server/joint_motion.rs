@@ -135,6 +135,8 @@ fn upright_deed(feet: &[Isometry3<f64>; 2]) -> Deed {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use monas_robot::FallDetector;
+
     use crate::motions::{Motion, sitting, stand};
     use crate::walk::{SteppingWalk, WalkEngine, WalkVelocity};
 
@@ -143,9 +145,11 @@ mod tests {
         let (mut motion, mut angles) = (Motion::of(skill, stand()).unwrap(), stand());
         let mut joints = JointMotion::default();
         let (mut found, mut number) = (Vec::new(), 0);
+        let mut falls = FallDetector::default();
+        falls.measure(1.3, 0.0);
         for _ in 0..600 {
             let before = angles;
-            let over = motion.advance(CYCLE_SECONDS, 1.3, &mut angles);
+            let over = motion.advance(CYCLE_SECONDS, falls, &mut angles);
             let seen = joints.observe(&before, &angles, posture);
             if seen.skill_number != number {
                 number = seen.skill_number;

@@ -31,7 +31,10 @@ impl<A: Activity> Fixture<A> {
     }
 
     fn report(&mut self, phase: MotionPhase, done: u64) {
-        self.publish(topics::MOTION_STATE, MotionState { phase: phase.into(), done });
+        self.publish(
+            topics::MOTION_STATE,
+            MotionState { phase: phase.into(), done, ..MotionState::default() },
+        );
     }
 
     /// Calls the behaviour once; returns what it requests.

@@ -65,6 +65,7 @@ impl FieldBody {
 
     fn feel(&self, now: Timestamp, on_field: bool, sensors: &mut monas_robot::Sensors) {
         let Senses { odometry, buttons, .. } = &self.senses;
+        let (skill_done, skill_result) = self.skill.done();
         *sensors = monas_robot::Sensors {
             measured_at: now.as_nanos(),
             head_yaw: self.anatomy.head_yaw.clamp(self.senses.head_yaw),
@@ -78,7 +79,8 @@ impl FieldBody {
             left_bumper: buttons.left_bumper,
             right_bumper: buttons.right_bumper,
             posture: posture(self.senses.phase, on_field) as i32,
-            skill_done: self.skill.done(),
+            skill_done,
+            skill_result: skill_result as i32,
             battery: 1.0,
             relaxed: self.rests && (self.senses.phase == BodyPhase::Sitting || self.senses.phase.is_fallen()),
         };
@@ -253,6 +255,8 @@ fn post(side: Option<Side>) -> ObjectKind {
 
 #[cfg(test)]
 mod tests {
+    use monas_robot::SkillResult;
+
     use super::*;
     use crate::{FieldSide, RobotSetup, Setup, SimulatedWorld, TeamColour, TeamSetup};
 
@@ -346,5 +350,6 @@ mod tests {
         }
         let cycles = done_at.expect("the kick ends");
         assert!((70..100).contains(&cycles), "a kick takes 1.6 s, not {cycles} cycles");
+        assert_eq!(percepts.sensors.skill_result(), SkillResult::Performed);
     }
 }

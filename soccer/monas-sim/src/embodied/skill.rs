@@ -1,6 +1,6 @@
 //! The skill that a body performs for its agents, from the command to its end.
 
-use monas_robot::{Actuators, Skill};
+use monas_robot::{Actuators, Skill, SkillResult};
 
 use crate::{BodyPhase, Motion, Side};
 
@@ -14,6 +14,7 @@ pub(super) struct SkillTrack {
     number: u64,
     active: Option<ActiveSkill>,
     done: u64,
+    result: SkillResult,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -35,7 +36,7 @@ impl SkillTrack {
                 self.active = Some(ActiveSkill { motion, begun: false, readings: 0 });
             }
             // No skill, or one requested while another is active: it ends at once.
-            _ if self.active.is_none() => self.done = self.number,
+            _ if self.active.is_none() => self.end(SkillResult::Refused),
             _ => {}
         }
     }
@@ -47,11 +48,21 @@ impl SkillTrack {
         active.readings += 1;
         let performing = performs(active.motion, phase);
         active.begun |= performing;
-        let refused = !active.begun && active.readings > PATIENCE;
-        if refused || (active.begun && !performing) {
-            self.active = None;
-            self.done = self.number;
+        let (motion, begun) = (active.motion, active.begun);
+        if !begun && active.readings > PATIENCE {
+            self.end(SkillResult::Refused);
+        } else if begun && !performing {
+            self.end(if completes(motion, phase) {
+                SkillResult::Performed
+            } else {
+                SkillResult::Interrupted
+            });
         }
+    }
+
+    fn end(&mut self, result: SkillResult) {
+        self.active = None;
+        (self.done, self.result) = (self.number, result);
     }
 
     /// The motion of the legs for the active skill, if any.
@@ -59,9 +70,9 @@ impl SkillTrack {
         self.active.map(|active| active.motion)
     }
 
-    /// The number of the last skill that has ended.
-    pub(super) fn done(&self) -> u64 {
-        self.done
+    /// The number of the last skill that has ended, and how.
+    pub(super) fn done(&self) -> (u64, SkillResult) {
+        (self.done, self.result)
     }
 }
 
@@ -88,9 +99,18 @@ fn performs(motion: Motion, phase: BodyPhase) -> bool {
     )
 }
 
+/// Whether a body that has begun a motion and is in this phase after it has performed all of it.
+fn completes(motion: Motion, phase: BodyPhase) -> bool {
+    match motion {
+        Motion::Fall(_) | Motion::Dive(_) => phase.is_fallen(),
+        _ => matches!(phase, BodyPhase::Standing | BodyPhase::Walking),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Direction;
 
     fn kick(number: u64) -> Actuators {
         Actuators { skill: Skill::KickLeft as i32, skill_number: number, ..Actuators::default() }
@@ -101,11 +121,33 @@ mod tests {
         let mut track = SkillTrack::default();
         track.command(&kick(1));
         track.observe(BodyPhase::Standing);
-        assert_eq!((track.motion(), track.done()), (Some(Motion::Kick(Side::Left)), 0));
+        assert_eq!(
+            (track.motion(), track.done()),
+            (Some(Motion::Kick(Side::Left)), (0, SkillResult::NoResult))
+        );
         track.observe(BodyPhase::Kicking(Side::Left));
         track.command(&kick(1));
         track.observe(BodyPhase::Standing);
-        assert_eq!((track.motion(), track.done()), (None, 1));
+        assert_eq!((track.motion(), track.done()), (None, (1, SkillResult::Performed)));
+    }
+
+    #[test]
+    fn a_body_that_falls_in_a_skill_has_not_performed_it() {
+        let result = |skill: Skill, during, after| {
+            let mut track = SkillTrack::default();
+            track.command(&Actuators { skill: skill as i32, skill_number: 4, ..Actuators::default() });
+            track.observe(during);
+            track.observe(after);
+            track.done()
+        };
+        let (kicking, falling) = (BodyPhase::Kicking(Side::Left), BodyPhase::Falling(Direction::Front));
+        let lying = BodyPhase::Fallen(Direction::Left);
+        assert_eq!(result(Skill::KickLeft, kicking, falling), (4, SkillResult::Interrupted));
+        assert_eq!(result(Skill::StandUp, BodyPhase::StandingUp, lying), (4, SkillResult::Interrupted));
+        assert_eq!(
+            result(Skill::DiveLeft, BodyPhase::Diving(Side::Left), lying),
+            (4, SkillResult::Performed)
+        );
     }
 
     #[test]
@@ -113,8 +155,8 @@ mod tests {
         let mut track = SkillTrack::default();
         track.command(&kick(1));
         for _ in 0..=PATIENCE {
-            track.observe(BodyPhase::Fallen(crate::Direction::Front));
+            track.observe(BodyPhase::Fallen(Direction::Front));
         }
-        assert_eq!((track.motion(), track.done()), (None, 1));
+        assert_eq!((track.motion(), track.done()), (None, (1, SkillResult::Refused)));
     }
 }

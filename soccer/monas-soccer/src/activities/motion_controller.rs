@@ -68,7 +68,11 @@ impl Activity for MotionController {
         let gaze = self.gaze(blackboard, allowed);
         let lights = blackboard.read(topics::LEDS).copied().unwrap_or_default();
         blackboard.publish(body::ACTUATORS, convert::actuators(&order, (gaze.yaw, gaze.pitch), lights))?;
-        let state = MotionState { phase: phase(report, &order.walk).into(), done: self.motion.done() };
+        let state = MotionState {
+            phase: phase(report, &order.walk).into(),
+            done: self.motion.done(),
+            result: convert::motion_result(self.motion.end()).into(),
+        };
         if self.said != Some(state) {
             blackboard.publish(topics::MOTION_STATE, state)?;
             self.said = Some(state);
@@ -214,11 +218,15 @@ mod tests {
         let (mut stage, mut activity) = (ActivityFixture::new(), MotionController::default());
         let look = HeadRequest { mode: HeadMode::Look.into(), yaw: 0.5, pitch: 0.1 };
         stage.publish(body::SENSORS, felt(BodyPosture::Standing, 0)).publish(topics::GAME_STATE, playing());
-        stage.publish(topics::LEDS, LedRequest { chest: 7, left_eye: 8, right_eye: 9 });
+        stage.publish(
+            topics::LEDS,
+            LedRequest { chest: 7, left_eye: 8, right_eye: 9, left_foot: 5, right_foot: 6 },
+        );
         stage.publish(topics::HEAD, look).run(&mut activity);
         let actuators = stage.latest(body::ACTUATORS).unwrap();
         assert_eq!((actuators.head_yaw, actuators.head_pitch), (0.5, 0.1));
         assert_eq!((actuators.chest, actuators.left_eye, actuators.right_eye), (7, 8, 9));
+        assert_eq!((actuators.left_foot, actuators.right_foot), (5, 6));
         stage.publish(topics::HEAD, HeadRequest { mode: HeadMode::Scan.into(), ..look }).run(&mut activity);
         assert_eq!(stage.latest(body::ACTUATORS).unwrap().head_yaw, 0.0, "a sweep begins in the middle");
         stage.wait(3 * TICK).run(&mut activity);

@@ -96,7 +96,7 @@ mod tests {
     use crate::{MotionPhase, MotionState};
 
     fn state(done: u64) -> MotionState {
-        MotionState { phase: MotionPhase::Standing.into(), done }
+        MotionState { phase: MotionPhase::Standing.into(), done, ..MotionState::default() }
     }
 
     #[test]

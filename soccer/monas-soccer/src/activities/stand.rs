@@ -39,9 +39,15 @@ mod tests {
         let mut stage = ActivityFixture::new();
         assert!(!stage.run(&mut Stand));
         assert_eq!(stage.latest(topics::MOTION).unwrap().kind(), MotionKind::Stand);
-        stage.publish(topics::MOTION_STATE, MotionState { phase: MotionPhase::Fallen.into(), done: 0 });
+        stage.publish(
+            topics::MOTION_STATE,
+            MotionState { phase: MotionPhase::Fallen.into(), ..MotionState::default() },
+        );
         assert!(!stage.run(&mut Stand));
-        stage.publish(topics::MOTION_STATE, MotionState { phase: MotionPhase::Standing.into(), done: 0 });
+        stage.publish(
+            topics::MOTION_STATE,
+            MotionState { phase: MotionPhase::Standing.into(), ..MotionState::default() },
+        );
         assert!(stage.run(&mut Stand));
     }
 }

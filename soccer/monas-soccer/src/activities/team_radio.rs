@@ -11,7 +11,7 @@ use narukom::{AnyMessage, Timestamp};
 use super::shot::ground;
 use crate::functionality::kicks::Kicks;
 use crate::functionality::report_budget::ReportBudget;
-use crate::{MotionKind, MotionPhase, PlayerState, Team, TeamReport, topics};
+use crate::{MotionKind, MotionPhase, MotionResult, PlayerState, Team, TeamReport, topics};
 
 /// Sends this player's pose, its estimate of the ball and the times of its kicks to the team, and
 /// collects the reports of team mates. A report is valid for four seconds.
@@ -60,6 +60,15 @@ impl TeamRadio {
         let Some(motion) = blackboard.read(topics::MOTION) else { return };
         let is_kick = matches!(motion.kind(), MotionKind::KickLeft | MotionKind::KickRight);
         let number = if is_kick { motion.number } else { 0 };
+        if let Some(state) = blackboard.read(topics::MOTION_STATE) {
+            let failed = match state.result() {
+                // The end of a motion in which the robot fell is reported when it stands again.
+                _ if state.phase() == MotionPhase::Fallen => motion.number,
+                MotionResult::Refused | MotionResult::Interrupted => state.done,
+                MotionResult::NoResult | MotionResult::Performed => 0,
+            };
+            self.kicks.observe_failure(failed);
+        }
         self.kicks.observe_request(blackboard.now(), number, motion.is_pass);
     }
 

@@ -33,6 +33,14 @@ impl Kicks {
         }
     }
 
+    /// Records that the motion of a request was refused, or that the robot fell in it. If the foot has
+    /// not hit the ball by then, there was no kick.
+    pub fn observe_failure(&mut self, number: u64) {
+        if number == self.newest {
+            self.under_way = None;
+        }
+    }
+
     /// Seconds since the last pass, if there was one.
     pub fn since_pass(&self, now: Timestamp) -> Option<f64> {
         self.passed_at.map(|at| now.since(at).as_secs_f64())
@@ -65,5 +73,9 @@ mod tests {
         kicks.observe_request(at(3000), 2, false);
         kicks.observe_request(at(4000), 2, true);
         assert_eq!((kicks.since_pass(at(4000)), kicks.since_shot(at(4000))), (Some(2.2), Some(0.0)));
+        kicks.observe_request(at(5000), 3, true);
+        kicks.observe_failure(3);
+        kicks.observe_request(at(6000), 3, true);
+        assert_eq!(kicks.since_pass(at(6000)), Some(4.2), "the robot fell before it kicked");
     }
 }

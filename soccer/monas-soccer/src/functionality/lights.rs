@@ -30,6 +30,12 @@ pub fn pose_eye(confidence: f64) -> Rgb {
     green << 8
 }
 
+/// The colour of the right foot: white while the robot's team is about to kick off.
+pub fn kick_off_foot(state: PlayerState, has_kick_off: bool) -> Rgb {
+    let waits = matches!(state, PlayerState::Initial | PlayerState::Ready | PlayerState::Set);
+    if waits && has_kick_off { 0xffffff } else { OFF }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -40,6 +46,13 @@ mod tests {
             [PlayerState::Ready, PlayerState::Set, PlayerState::Playing, PlayerState::Penalized].map(chest);
         assert_eq!(colours, [0x0000ff, 0xffff00, 0x00ff00, 0xff0000]);
         assert_eq!((chest(PlayerState::Initial), chest(PlayerState::Finished)), (OFF, OFF));
+    }
+
+    #[test]
+    fn the_right_foot_shows_the_kick_off_until_play() {
+        assert_eq!(kick_off_foot(PlayerState::Set, true), 0xffffff);
+        assert_eq!(kick_off_foot(PlayerState::Set, false), OFF);
+        assert_eq!(kick_off_foot(PlayerState::Playing, true), OFF);
     }
 
     #[test]

@@ -65,6 +65,17 @@ pub enum Posture {
     Lifted,
 }
 
+/// How a skill, or a request for one, ended.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum SkillEnd {
+    /// The joints have gone through the whole motion.
+    Performed,
+    /// It did not begin: the game or the posture of the body did not allow it.
+    Refused,
+    /// The body fell during the motion, was lifted, or did not report the end.
+    Interrupted,
+}
+
 /// What the body reports.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct BodyReport {
@@ -72,6 +83,8 @@ pub struct BodyReport {
     pub posture: Posture,
     /// The number of the last skill that has ended.
     pub skill_done: u64,
+    /// How that skill ended; none before the first.
+    pub skill_end: Option<SkillEnd>,
 }
 
 /// The command to the body; it holds until the next.
@@ -97,16 +110,18 @@ pub struct MotionArbiter {
     order: MotionCommand,
     /// Start time of the current skill.
     under_way: Option<Timestamp>,
-    /// The request whose skill is in progress.
-    pending: Option<u64>,
+    /// The request whose skill is in progress or was, until the body stands again; and how the skill
+    /// ended.
+    pending: Option<(u64, Option<SkillEnd>)>,
     done: u64,
+    end: Option<SkillEnd>,
 }
 
 impl MotionArbiter {
     /// An arbiter for a body with a gait.
     pub fn new(gait: GaitLimits) -> MotionArbiter {
         let order = MotionCommand { walk: Walk::STILL, skill: None, skill_number: 0 };
-        MotionArbiter { gait, order, under_way: None, pending: None, done: 0 }
+        MotionArbiter { gait, order, under_way: None, pending: None, done: 0, end: None }
     }
 
     /// Changes the gait.
@@ -117,6 +132,11 @@ impl MotionArbiter {
     /// The number of the last request that is over: performed or rejected.
     pub fn done(&self) -> u64 {
         self.done
+    }
+
+    /// How that request ended; none before the first.
+    pub fn end(&self) -> Option<SkillEnd> {
+        self.end
     }
 
     /// Whether a skill is in progress.
@@ -149,10 +169,18 @@ impl MotionArbiter {
         let lost = self.under_way.is_some_and(|since| now.since(since) > PATIENCE);
         if ended || lost || report.posture == Posture::Lifted {
             self.under_way = None;
+            let end = report.skill_end.filter(|_| ended).unwrap_or(SkillEnd::Interrupted);
+            if let Some((_, pending)) = &mut self.pending {
+                // A dive ends before the robot gets up from it, which is another skill.
+                pending.get_or_insert(end);
+            }
         }
         let rests = matches!(report.posture, Posture::Upright | Posture::Lifted);
-        if self.under_way.is_none() && (rests || lost) {
-            self.done = self.pending.take().unwrap_or(self.done);
+        if self.under_way.is_none()
+            && (rests || lost)
+            && let Some((number, end)) = self.pending.take()
+        {
+            (self.done, self.end) = (number, end);
         }
     }
 
@@ -162,10 +190,10 @@ impl MotionArbiter {
         match request.wish {
             DesiredMotion::Skill(skill) if self.is_new(request.number) => match heard && ready {
                 true => {
-                    self.pending = Some(request.number);
+                    self.pending = Some((request.number, None));
                     self.begin(now, skill, report);
                 }
-                false => self.done = request.number,
+                false => (self.done, self.end) = (request.number, Some(SkillEnd::Refused)),
             },
             DesiredMotion::Walk(walk) if heard && ready => self.order.walk = self.gait.limit(&walk),
             _ => {}
@@ -173,7 +201,7 @@ impl MotionArbiter {
     }
 
     fn is_new(&self, number: u64) -> bool {
-        number > self.done && self.pending != Some(number)
+        number > self.done && self.pending.is_none_or(|(pending, _)| pending != number)
     }
 
     /// Chooses a number that is new to the body, even if another arbiter commanded it before.
@@ -189,7 +217,11 @@ mod tests {
     use super::*;
 
     const GAIT: GaitLimits = GaitLimits { forward: 0.3, backward: 0.1, sideways: 0.1, turn: 1.0 };
-    const UPRIGHT: BodyReport = BodyReport { posture: Posture::Upright, skill_done: 0 };
+    const UPRIGHT: BodyReport = BodyReport { posture: Posture::Upright, skill_done: 0, skill_end: None };
+
+    fn report(posture: Posture, skill_done: u64) -> BodyReport {
+        BodyReport { posture, skill_done, skill_end: (skill_done > 0).then_some(SkillEnd::Performed) }
+    }
 
     fn at(millis: u64) -> Timestamp {
         Timestamp::from_nanos(millis * 1_000_000)
@@ -227,12 +259,13 @@ mod tests {
         let kick = request(DesiredMotion::Skill(Skill::KickLeft), 1);
         let order = motion.step(at(0), UPRIGHT, kick, true);
         assert_eq!((order.skill, order.skill_number, order.walk), (Some(Skill::KickLeft), 1, Walk::STILL));
-        let busy = BodyReport { posture: Posture::Busy, skill_done: 0 };
+        let busy = report(Posture::Busy, 0);
         assert_eq!(motion.step(at(100), busy, kick, true).skill_number, 1);
         assert_eq!((motion.done(), motion.is_busy()), (0, true));
-        let over = BodyReport { posture: Posture::Upright, skill_done: 1 };
+        let over = report(Posture::Upright, 1);
         assert_eq!(motion.step(at(1600), over, kick, true).skill_number, 1);
         assert_eq!((motion.done(), motion.is_busy()), (1, false));
+        assert_eq!(motion.end(), Some(SkillEnd::Performed));
         assert_eq!(motion.step(at(1700), over, request(ahead(), 1), true).walk.ahead, 0.2);
     }
 
@@ -241,19 +274,19 @@ mod tests {
         let mut motion = MotionArbiter::new(GAIT);
         let dive = request(DesiredMotion::Skill(Skill::DiveRight), 7);
         motion.step(at(0), UPRIGHT, dive, true);
-        let order = motion.step(at(500), BodyReport { posture: Posture::Fallen, skill_done: 1 }, dive, true);
+        let order = motion.step(at(500), report(Posture::Fallen, 1), dive, true);
         assert_eq!((order.skill, order.skill_number), (Some(Skill::StandUp), 2));
         assert_eq!(motion.done(), 0);
-        motion.step(at(600), BodyReport { posture: Posture::Busy, skill_done: 1 }, None, true);
+        motion.step(at(600), report(Posture::Busy, 1), None, true);
         assert_eq!(motion.done(), 0);
-        motion.step(at(4000), BodyReport { posture: Posture::Upright, skill_done: 2 }, None, true);
-        assert_eq!(motion.done(), 7);
+        motion.step(at(4000), report(Posture::Upright, 2), None, true);
+        assert_eq!((motion.done(), motion.end()), (7, Some(SkillEnd::Performed)));
     }
 
     #[test]
     fn a_fallen_robot_gets_up_and_tries_again() {
         let mut motion = MotionArbiter::new(GAIT);
-        let lies = |skill_done| BodyReport { posture: Posture::Fallen, skill_done };
+        let lies = |skill_done| report(Posture::Fallen, skill_done);
         assert_eq!(motion.step(at(0), lies(0), request(ahead(), 0), true).skill, Some(Skill::StandUp));
         assert_eq!(motion.step(at(100), lies(0), request(ahead(), 0), true).skill_number, 1);
         assert_eq!(motion.step(at(4000), lies(1), request(ahead(), 0), true).skill_number, 2);
@@ -267,8 +300,18 @@ mod tests {
         assert_eq!(motion.step(at(0), UPRIGHT, kick, false).skill, None);
         assert_eq!(motion.done(), 3);
         let mut motion = MotionArbiter::new(GAIT);
-        motion.step(at(0), BodyReport { posture: Posture::Fallen, skill_done: 0 }, kick, true);
-        assert_eq!(motion.done(), 3);
+        motion.step(at(0), report(Posture::Fallen, 0), kick, true);
+        assert_eq!((motion.done(), motion.end()), (3, Some(SkillEnd::Refused)));
+    }
+
+    #[test]
+    fn a_kick_in_which_the_robot_falls_is_interrupted() {
+        let mut motion = MotionArbiter::new(GAIT);
+        motion.step(at(0), UPRIGHT, request(DesiredMotion::Skill(Skill::KickLeft), 1), true);
+        let fell = BodyReport { skill_end: Some(SkillEnd::Interrupted), ..report(Posture::Fallen, 1) };
+        motion.step(at(500), fell, None, true);
+        motion.step(at(4000), report(Posture::Upright, 2), None, true);
+        assert_eq!((motion.done(), motion.end()), (1, Some(SkillEnd::Interrupted)));
     }
 
     #[test]
@@ -276,18 +319,18 @@ mod tests {
         let kick = request(DesiredMotion::Skill(Skill::KickLeft), 1);
         let mut motion = MotionArbiter::new(GAIT);
         motion.step(at(0), UPRIGHT, kick, true);
-        motion.step(at(100), BodyReport { posture: Posture::Lifted, skill_done: 0 }, kick, false);
+        motion.step(at(100), report(Posture::Lifted, 0), kick, false);
         assert_eq!((motion.done(), motion.is_busy()), (1, false));
         let mut motion = MotionArbiter::new(GAIT);
         motion.step(at(0), UPRIGHT, kick, true);
-        motion.step(at(10_100), BodyReport { posture: Posture::Busy, skill_done: 0 }, kick, true);
+        motion.step(at(10_100), report(Posture::Busy, 0), kick, true);
         assert_eq!((motion.done(), motion.is_busy()), (1, false));
     }
 
     #[test]
     fn the_body_gets_a_number_it_has_not_met() {
         let mut motion = MotionArbiter::new(GAIT);
-        let report = BodyReport { posture: Posture::Upright, skill_done: 41 };
+        let report = report(Posture::Upright, 41);
         assert_eq!(
             motion.step(at(0), report, request(DesiredMotion::Skill(Skill::KickLeft), 1), true).skill_number,
             42
