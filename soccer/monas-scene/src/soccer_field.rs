@@ -7,7 +7,7 @@ use monas_robot::{Posture, Sensors};
 use monas_sim::messages::Incident;
 use monas_studio::{
     Banner, Belief, Body, Cameras, Ground, GroundMark, Scene, SceneAction, SceneEvent, SceneMessages,
-    SceneObject, ScenePicture,
+    SceneObject, ScenePicture, SeenLine,
 };
 use prost::Message;
 use serde_json::{Value, json};
@@ -23,6 +23,7 @@ const HOST: &str = "monas/host";
 const GAME_STATE: &str = "soccer/game_state";
 const POSE: &str = "soccer/pose";
 const BALL: &str = "soccer/ball";
+const FIELD_LINES: &str = "soccer/field_lines";
 
 /// Carpet around the lines, and measures that messages do not have: those of the SPL of 2010.
 const BORDER: f64 = 0.7;
@@ -37,7 +38,7 @@ pub struct SoccerField;
 
 impl Scene for SoccerField {
     fn topics(&self) -> &[&'static str] {
-        &[TRUTH, SCORE, HOST, GAME_STATE, POSE, BALL]
+        &[TRUTH, SCORE, HOST, GAME_STATE, POSE, BALL, FIELD_LINES]
     }
 
     fn event_topics(&self) -> &[&'static str] {
@@ -66,6 +67,10 @@ impl Scene for SoccerField {
             bodies: truth.map(|truth| bodies(truth, messages)).unwrap_or_default(),
             objects: truth.and_then(ball).into_iter().collect(),
             beliefs: messages.all(POSE).flat_map(|(host, pose)| beliefs(host, pose, messages)).collect(),
+            seen_lines: messages
+                .all(FIELD_LINES)
+                .flat_map(|(host, seen)| seen_lines(host, seen, messages))
+                .collect(),
             banner: messages.all(SCORE).next().map(|(_, score)| banner(score, messages)),
             actions: messages
                 .all(SCORE)
@@ -136,12 +141,37 @@ fn ball(truth: &Value) -> Option<SceneObject> {
     Some(SceneObject { kind: "ball".into(), x: x?, y: y?, vx: vx?, vy: vy?, radius: BALL_RADIUS })
 }
 
-/// Where a robot believes that it and the ball are. Its frame is the field's if it attacks the
-/// yellow goal, on the right, and turned by half a turn otherwise.
+/// Whether a robot attacks the goal on the left. Its frame is the field's if it attacks the yellow
+/// goal, on the right, and turned by half a turn otherwise.
+fn attacks_left(host: &str, messages: &SceneMessages<'_>) -> bool {
+    messages.of(host, GAME_STATE).is_some_and(|game| game["goal_to_attack"] == "BLUE")
+}
+
+/// Where a robot sees lines, from where it believes that it is. It publishes the pose with the
+/// lines, at most one cycle after their images.
+fn seen_lines(host: &str, seen: &Value, messages: &SceneMessages<'_>) -> Vec<SeenLine> {
+    let pose = messages.of(host, POSE).unwrap_or(&Value::Null);
+    let [Some(x), Some(y), Some(heading)] = ["x", "y", "heading"].map(|field| number(pose, field)) else {
+        return Vec::new();
+    };
+    let sign = if attacks_left(host, messages) { -1.0 } else { 1.0 };
+    let (sine, cosine) = (libm::sin(heading), libm::cos(heading));
+    let place = |ahead: f64, left: f64| {
+        [sign * (x + cosine * ahead - sine * left), sign * (y + sine * ahead + cosine * left)]
+    };
+    let line = |line: &Value| {
+        let [x1, y1, x2, y2] = ["x1", "y1", "x2", "y2"].map(|field| number(line, field));
+        let ([x1, y1], [x2, y2]) = (place(x1?, y1?), place(x2?, y2?));
+        Some(SeenLine { host: host.to_owned(), ends: [x1, y1, x2, y2] })
+    };
+    seen["lines"].as_array().into_iter().flatten().filter_map(line).collect()
+}
+
+/// Where a robot believes that it and the ball are.
 fn beliefs(host: &str, pose: &Value, messages: &SceneMessages<'_>) -> Vec<Belief> {
     let fields = ["x", "y", "heading", "confidence"].map(|field| number(pose, field));
     let [Some(x), Some(y), Some(heading), Some(confidence)] = fields else { return Vec::new() };
-    let attacks_left = messages.of(host, GAME_STATE).is_some_and(|game| game["goal_to_attack"] == "BLUE");
+    let attacks_left = attacks_left(host, messages);
     let sign = if attacks_left { -1.0 } else { 1.0 };
     let belief = |kind: &str, x: f64, y: f64, heading: Option<f64>| Belief {
         host: host.to_owned(),
@@ -236,6 +266,24 @@ mod tests {
         assert_eq!(at("YELLOW", true), [own(1.0, 0.5, 0.0), ball_at(2.0, 0.75)]);
         assert_eq!(at("BLUE", true), [own(-1.0, -0.5, PI), ball_at(-2.0, -0.75)]);
         assert_eq!(at("BLUE", false), [own(-1.0, -0.5, PI)]);
+    }
+
+    #[test]
+    fn lines_are_where_a_robot_that_believes_its_pose_sees_them() {
+        let pose = json!({"x": 1.0, "y": 0.5, "heading": 0.5 * PI, "confidence": 0.5});
+        let seen =
+            json!({"taken_at": 1, "lines": [{"x1": 1.0, "y1": 0.25, "x2": 2.0, "y2": 0.0}, {"x1": 1.0}]});
+        let at = |goal: &str| {
+            let game = json!({"goal_to_attack": goal});
+            let messages =
+                [("b", POSE, pose.clone()), ("b", GAME_STATE, game), ("b", FIELD_LINES, seen.clone())];
+            let lines = draw(&messages).seen_lines;
+            assert!(lines.iter().all(|line| line.host == "b"));
+            lines.iter().map(|line| line.ends.map(|end| (end * 1e6).round() / 1e6)).collect::<Vec<_>>()
+        };
+        assert_eq!(at("YELLOW"), [[0.75, 1.5, 1.0, 2.5]]);
+        assert_eq!(at("BLUE"), [[-0.75, -1.5, -1.0, -2.5]]);
+        assert!(draw(&[("b", FIELD_LINES, seen.clone())]).seen_lines.is_empty(), "the pose is not known");
     }
 
     #[test]

@@ -112,7 +112,7 @@ pub use pace::Pace;
 pub use read_value::ReadValue;
 pub use scene::{
     Banner, Belief, Body, Ground, GroundMark, Scene, SceneAction, SceneEvent, SceneMessages, SceneObject,
-    ScenePicture,
+    ScenePicture, SeenLine,
 };
 pub use server::{ListenAddress, Studio, StudioSettings};
 pub use tape_difference::{TapeDifference, TapeEvent};

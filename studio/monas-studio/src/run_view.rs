@@ -257,7 +257,7 @@ impl RunView {
         let picture = self.scene_picture(scene);
         let ground = json!(picture.ground);
         let mut object = json!({"bodies": picture.bodies, "objects": picture.objects, "beliefs": picture.beliefs,
-            "banner": picture.banner});
+            "seen_lines": picture.seen_lines, "banner": picture.banner});
         if cursor.ground.as_ref() != Some(&ground) {
             object["ground"] = ground.clone();
             cursor.ground = Some(ground);

@@ -84,6 +84,8 @@ pub struct ScenePicture {
     pub objects: Vec<SceneObject>,
     /// Where hosts believe that things are.
     pub beliefs: Vec<Belief>,
+    /// Where hosts see lines on the ground.
+    pub seen_lines: Vec<SeenLine>,
     /// What is said above the plane.
     pub banner: Option<Banner>,
     /// What viewers can do that may change the run.
@@ -202,6 +204,15 @@ pub struct Belief {
     pub heading: Option<f64>,
     /// How sure the host is, from 0 to 1.
     pub confidence: f64,
+}
+
+/// A straight part of a line on the ground, where a host sees it.
+#[derive(Clone, PartialEq, Default, Debug, Serialize)]
+pub struct SeenLine {
+    /// The host.
+    pub host: String,
+    /// Begin and end: x, y, x, y, m.
+    pub ends: [f64; 4],
 }
 
 /// A score or another summary.

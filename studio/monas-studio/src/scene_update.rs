@@ -1,6 +1,6 @@
 //! A picture from above as a scene in three dimensions, by Foxglove's schema.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::PI;
 
 use prost_types::Timestamp;
@@ -54,6 +54,7 @@ impl SceneHistory {
         entities.extend(picture.bodies.iter().map(body));
         entities.extend(picture.objects.iter().enumerate().map(|(place, object)| thing(place, object)));
         entities.extend(picture.beliefs.iter().map(|one| belief(one, &picture.bodies)));
+        entities.extend(seen_lines(picture));
         let present: BTreeSet<String> = entities.iter().map(|entity| entity.id.clone()).collect();
         let timestamp = Some(timestamp(time));
         let deletion = |id: &String| SceneEntityDeletion {
@@ -158,6 +159,27 @@ fn belief(belief: &Belief, bodies: &[Body]) -> SceneEntity {
     SceneEntity { lines, ..entity(format!("belief {} {}", belief.host, belief.kind)) }
 }
 
+/// The lines that each host sees, one entity for a host.
+fn seen_lines(picture: &ScenePicture) -> impl Iterator<Item = SceneEntity> {
+    let mut hosts: BTreeMap<&str, Vec<Point3>> = BTreeMap::new();
+    for line in &picture.seen_lines {
+        let [x1, y1, x2, y2] = line.ends;
+        hosts.entry(&line.host).or_default().extend([point(x1, y1), point(x2, y2)]);
+    }
+    hosts.into_iter().map(|(host, points)| {
+        let group = picture.bodies.iter().find(|body| body.host == host).map_or(0, |body| body.group);
+        let lines = vec![LinePrimitive {
+            r#type: line_primitive::Type::LineList.into(),
+            pose: pose(0.0, 0.0, 0.01, 0.0),
+            thickness: LINE / 2.0,
+            points,
+            color: group_colour(group, 1.0),
+            ..LinePrimitive::default()
+        }];
+        SceneEntity { lines, ..entity(format!("lines {host}")) }
+    })
+}
+
 fn point(x: f64, y: f64) -> Point3 {
     Point3 { x, y, z: 0.0 }
 }
@@ -214,18 +236,24 @@ mod tests {
             ground,
             bodies: vec![robot("1", 1.0), robot("2", 2.0)],
             objects: vec![ball],
+            seen_lines: [1.0, 2.0].map(|x| SeenLine { host: "a".into(), ends: [x, 0.0, x, 1.0] }).into(),
             ..ScenePicture::default()
         };
         let mut history = SceneHistory::default();
         let ids = |update: &SceneUpdate| update.entities.iter().map(|one| one.id.clone()).collect::<Vec<_>>();
         let first = history.update(&picture, 2_500_000_000);
-        assert_eq!(ids(&first), ["body 0 1", "body 0 2", "ball 0", "ground"]);
+        assert_eq!(ids(&first), ["body 0 1", "body 0 2", "ball 0", "lines a", "ground"]);
+        let ends = [(1.0, 0.0), (1.0, 1.0), (2.0, 0.0), (2.0, 1.0)].map(|(x, y)| point(x, y));
+        assert_eq!(first.entities[3].lines[0].points, ends);
         assert_eq!(first.entities[0].timestamp, Some(Timestamp { seconds: 2, nanos: 500_000_000 }));
         let place = |entity: &SceneEntity| entity.cylinders[0].pose.and_then(|pose| pose.position);
         assert_eq!(place(&first.entities[1]), vector(2.0, 0.0, BODY_HEIGHT / 2.0));
-        let moved = ScenePicture { bodies: vec![robot("1", 1.5)], ..picture };
+        let moved = ScenePicture { bodies: vec![robot("1", 1.5)], seen_lines: Vec::new(), ..picture };
         let second = history.update(&moved, 3_000_000_000);
         assert_eq!(ids(&second), ["body 0 1", "ball 0"], "the ground is known");
-        assert_eq!(second.deletions.iter().map(|one| one.id.as_str()).collect::<Vec<_>>(), ["body 0 2"]);
+        assert_eq!(
+            second.deletions.iter().map(|one| one.id.as_str()).collect::<Vec<_>>(),
+            ["body 0 2", "lines a"]
+        );
     }
 }

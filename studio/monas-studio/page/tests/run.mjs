@@ -646,7 +646,9 @@ mkdirSync(SCREENSHOTS, { recursive: true });
 async function cameras(browser) {
   const tape = join(mkdtempSync(join(tmpdir(), 'monas-images-')), 'images.mcap');
   const images = fileURLToPath(new URL('../../../../config/match_images.xml', import.meta.url));
-  execFileSync(PROGRAM, ['run', images, '--for', '200ms', '--no-control', '--record', tape], { stdio: 'ignore' });
+  // play begins at once, with which robots begin to look
+  const rules = ['initial', 'ready', 'set'].flatMap((phase) => ['--set', `simulator.rules.${phase}_duration=0`]);
+  execFileSync(PROGRAM, ['run', images, ...rules, '--for', '500ms', '--no-control', '--record', tape], { stdio: 'ignore' });
   const studio = start(PROGRAM, ['studio', tape]);
   try {
     const { page, faults } = await open(browser, await studio.url);
@@ -654,6 +656,28 @@ async function cameras(browser) {
       const shown = [...document.querySelectorAll('.camera img')];
       return shown.length === 2 && shown.every((image) => image.complete && image.naturalWidth === 320);
     });
+    // the lines that the chosen robot sees lie on those of the field
+    await until(page, 'lines that are seen', () => document.querySelectorAll('line.seen').length >= 3);
+    const away = await page.evaluate(() => {
+      const number = (line, name) => Number(line.getAttribute(name));
+      // goal lines, middle line, fronts of the goal areas; touch lines, sides of the goal areas
+      const off = (x, y) => Math.min(
+        ...[3, 2.4, 0].map((at) => Math.abs(Math.abs(x) - at)),
+        ...[2, 1.1].map((at) => Math.abs(Math.abs(y) - at)),
+        Math.abs(Math.hypot(x, y) - 0.6),
+      );
+      return [...document.querySelectorAll('line.seen')].map((line) =>
+        off((number(line, 'x1') + number(line, 'x2')) / 2, (number(line, 'y1') + number(line, 'y2')) / 2));
+    });
+    const near = away.filter((distance) => distance < 0.25);
+    assert.ok(near.length >= 0.8 * away.length, `middles of seen lines are ${away} m off`);
+    await page.getByLabel('Whose beliefs are shown').selectOption('all');
+    await until(page, 'the lines of all', (least) => document.querySelectorAll('line.seen').length > least, away.length);
+    await page.getByLabel('Whose beliefs are shown').selectOption('none');
+    await until(page, 'no lines', () => document.querySelectorAll('line.seen').length === 0);
+    await page.getByLabel('Whose beliefs are shown').selectOption('chosen');
+    await until(page, 'the lines again', () => document.querySelectorAll('line.seen').length > 0);
+    await shot(page, 'seen-lines');
     const title = await textOf(page, '.camera h2');
     await page.keyboard.press('j');
     await until(page, 'the images of another robot', (before) => {
@@ -697,7 +721,7 @@ try {
   await check('a studio beside runs follows them', () => beside(browser));
   await check('a tape is played, searched and stepped', () => tape(browser));
   await check('two tapes are shown on one timeline', () => besides(browser));
-  await check('the cameras of a robot are shown', () => cameras(browser));
+  await check('the cameras of a robot are shown, and the lines that it sees', () => cameras(browser));
   await check('an event is raised by its name', () => events(browser));
   await check('a run is steered only with permission', () => steering(browser));
   if ('editor'.includes(ONLY) || ONLY.startsWith('editor')) {

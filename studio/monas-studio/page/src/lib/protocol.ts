@@ -118,6 +118,12 @@ export interface Belief {
   confidence: number;
 }
 
+/** A straight part of a line on the ground, where a host sees it: x, y, x, y. */
+export interface SeenLine {
+  host: string;
+  ends: [number, number, number, number];
+}
+
 /** A message that is published at the press of a button. */
 export interface SceneAction {
   label: string;
@@ -134,6 +140,7 @@ export interface SceneNews {
   bodies: Body[];
   objects: SceneObject[];
   beliefs: Belief[];
+  seen_lines: SeenLine[];
   banner: { groups: [string, string][]; text: string } | null;
 }
 
