@@ -122,6 +122,8 @@ pub struct BodySettings {
     pub options: BTreeMap<String, String>,
     /// What its cameras deliver.
     pub vision: CameraOutput,
+    /// The width of its images, pixels; by default that of its kind.
+    pub image_width: Option<u32>,
     /// The colours of the field that its images carry, for the calibration to begin with.
     pub colours: Option<FieldColours>,
     /// What lies between the body and the software.
@@ -144,13 +146,16 @@ impl CameraOutput {
         [("sightings", CameraOutput::Sightings), ("images", CameraOutput::Images)];
 }
 
+/// The widths of images that configurations can choose, with their words.
+pub const IMAGE_WIDTHS: [(&str, u32); 3] = [("160", 160), ("320", 320), ("640", 640)];
+
 impl Default for BodySettings {
     /// The simulated world's own body, without disturbances.
     fn default() -> BodySettings {
         let disturbances = Disturbances::default();
         let (kind, options) = (BodyKind::DEFAULT.to_owned(), BTreeMap::new());
-        let (vision, colours) = (CameraOutput::default(), None);
-        BodySettings { kind, address: None, options, vision, colours, disturbances }
+        let (vision, image_width, colours) = (CameraOutput::default(), None, None);
+        BodySettings { kind, address: None, options, vision, image_width, colours, disturbances }
     }
 }
 
@@ -188,13 +193,17 @@ impl BodySettings {
     /// disturbances.
     ///
     /// # Errors
-    /// There is no such kind, the body does not answer, or it has no images to deliver.
+    /// There is no such kind, the body does not answer, or it has no images to deliver, or none
+    /// of the width.
     pub fn open(&self, simulated: Option<Box<dyn Robot>>, seed: u64) -> Result<Box<dyn Robot>, Error> {
         let kind = BodyKind::named(&self.kind)?;
         let (address, options) = (self.address.clone(), self.options.clone());
         let mut body = (kind.open)(BodySite { address, options, simulated })?;
         if self.vision == CameraOutput::Images {
             body.deliver_images()?;
+            if let Some(width) = self.image_width {
+                body.set_image_width(width)?;
+            }
         }
         Ok(match (&self.colours, self.disturbances == Disturbances::default()) {
             (None, true) => body,

@@ -53,8 +53,8 @@ narukom::include_messages!("monas.robot");
 
 pub use anatomy::{Anatomy, Camera, Joint, Limits};
 pub use body_kind::{
-    BodyKind, BodyLimit, BodyOption, BodySettings, BodySite, CameraOutput, Capability, OpenBody, OptionKind,
-    Surroundings,
+    BodyKind, BodyLimit, BodyOption, BodySettings, BodySite, CameraOutput, Capability, IMAGE_WIDTHS,
+    OpenBody, OptionKind, Surroundings,
 };
 pub use fall_detector::FallDetector;
 pub use joint_targets::JointTargets;

@@ -89,6 +89,16 @@ pub trait Robot: Send {
         Err(Error::new(ErrorKind::Configuration, format!("the {model} delivers no images")))
     }
 
+    /// Delivers images of this width from now on, pixels; their height is three quarters of it.
+    ///
+    /// # Errors
+    /// The images have one size (the default implementation), or none of this width.
+    fn set_image_width(&mut self, _width: u32) -> Result<(), Error> {
+        let model = &self.anatomy().model;
+        let message = format!("the images of the {model} have one size; remove `image_width`");
+        Err(Error::new(ErrorKind::Configuration, message))
+    }
+
     /// Makes the body safe permanently: in any state it comes to rest, sits down, switches off the
     /// stiffness of its joints, and ignores further commands. It may be called more than once. The
     /// default implementation stands still, for bodies that cannot sit.

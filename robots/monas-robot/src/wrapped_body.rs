@@ -168,6 +168,10 @@ impl Robot for WrappedBody {
         self.body.deliver_images()
     }
 
+    fn set_image_width(&mut self, width: u32) -> Result<(), Error> {
+        self.body.set_image_width(width)
+    }
+
     /// Takes effect at once, and for good.
     fn rest(&mut self, now: Timestamp) -> Result<(), Error> {
         self.rests = true;

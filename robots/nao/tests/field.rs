@@ -16,6 +16,7 @@ fn field() -> SharedField {
         physics: Default::default(),
         rules: Default::default(),
         radio: Default::default(),
+        objects: Default::default(),
         teams: [team(1, TeamColour::Blue, FieldSide::Left), team(2, TeamColour::Red, FieldSide::Right)],
         robots: vec![RobotSetup { team: 1, number: 2 }],
         seed: 7,

@@ -10,7 +10,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use monas_robot::{
-    BodyKind, BodyOption, BodySettings, CameraOutput, Disturbances, FieldColours, OptionKind, Surroundings,
+    BodyKind, BodyOption, BodySettings, CameraOutput, Disturbances, FieldColours, IMAGE_WIDTHS, OptionKind,
+    Surroundings,
 };
 use yase::{Diagnostic, Source};
 
@@ -160,6 +161,9 @@ impl AgentReader<'_> {
             options,
             address: values.text("address").map(str::to_owned),
             vision,
+            image_width: values
+                .given("image_width")
+                .and_then(|given| self.image_width(given, &values, vision)),
             colours: values.given("colours").and_then(|given| self.colours(given, vision)),
             disturbances: Disturbances {
                 delay: values.duration("delay").unwrap_or_default(),
@@ -169,13 +173,24 @@ impl AgentReader<'_> {
         }
     }
 
+    fn image_width(&mut self, given: &Attribute, values: &Values<'_>, vision: CameraOutput) -> Option<u32> {
+        self.check_for_images(given, vision);
+        values.word("image_width", &IMAGE_WIDTHS)
+    }
+
+    /// Reports an attribute that only images need.
+    fn check_for_images(&mut self, given: &Attribute, vision: CameraOutput) {
+        if vision != CameraOutput::Images {
+            let name = &given.name;
+            let message = format!("`body` has `{name}`, which images need, but lacks the attribute `vision`");
+            self.diagnostics.push(given.name_error("E0305", message).with_hint("add `vision=\"images\"`"));
+        }
+    }
+
     /// The colours in the file that an attribute names; none, with diagnostics, if they are not
     /// usable.
     fn colours(&mut self, given: &Attribute, vision: CameraOutput) -> Option<FieldColours> {
-        if vision != CameraOutput::Images {
-            let message = "`body` has `colours`, which images need, but lacks the attribute `vision`";
-            self.diagnostics.push(given.name_error("E0305", message).with_hint("add `vision=\"images\"`"));
-        }
+        self.check_for_images(given, vision);
         let file = self.file(given, "`monas vision --calibrate` makes a colour table")?;
         let (colours, found) = colours::load(&file);
         self.diagnostics.extend(found);

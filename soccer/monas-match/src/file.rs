@@ -21,6 +21,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use monas::config::{self, Attribute, Element, Grammar, Layers, Values};
+use monas_robot::ObjectSet;
 use monas_sim::{FieldGeometry, FieldSide, MatchRules, Physics, Radio, TeamColour, TeamSetup};
 use yase::{Diagnostic, Source, Span};
 
@@ -35,6 +36,7 @@ pub(crate) struct MatchFile {
     pub(crate) physics: Physics,
     pub(crate) rules: MatchRules,
     pub(crate) radio: Radio,
+    pub(crate) objects: ObjectSet,
     pub(crate) teams: Vec<TeamFile>,
 }
 
@@ -68,10 +70,12 @@ pub(crate) fn read(path: &Path, layers: &Layers, diagnostics: &mut Vec<Diagnosti
     if let Err(error) = radio.validate() {
         diagnostics.push(root.error("E0405", root.name_span(), error.to_string()));
     }
-    set_half(&mut rules, Values::of(&root, files.grammar).duration("half"), &root, diagnostics);
+    let values = Values::of(&root, files.grammar);
+    let objects = values.word("objects", &grammar::OBJECTS).unwrap_or_default();
+    set_half(&mut rules, values.duration("half"), &root, diagnostics);
     let team = |team| read_team(team, path, files.grammar, diagnostics);
     let teams = root.children_named("team").filter_map(team).collect();
-    let file = MatchFile { geometry, physics, rules, radio, teams };
+    let file = MatchFile { geometry, physics, rules, radio, objects, teams };
     check(&file, &root, diagnostics);
     Some(file)
 }
@@ -359,6 +363,13 @@ mod tests {
         );
         assert!(found[1].starts_with("match.xml:2:36: error") && found[1].contains("did you mean `blue`?"));
         assert!(found[2].starts_with("match.xml:3:4: error[E0305]") && found[2].contains("`role`"));
+    }
+
+    #[test]
+    fn objects_have_a_time_that_is_known() {
+        let found = diagnostics_of("<match objects='2016'/>");
+        assert!(found[0].starts_with("match.xml:1:17: error"), "{found:#?}");
+        assert!(found[0].contains("2010") && found[0].contains("today"), "{found:#?}");
     }
 
     #[test]

@@ -3,10 +3,15 @@
 use std::time::Duration;
 
 use monas::config::{AttributeRule, ElementRule, Grammar, Identity, Kind};
+use monas_robot::ObjectSet;
 use monas_sim::{FieldGeometry, MatchRules, Parameter, Physics, Radio};
 
 /// The roots of a robot's role.
 pub(crate) const ROLE: [&str; 4] = ["agent", "provider", "link", "body"];
+
+/// The words for how ball and goals look.
+pub(crate) const OBJECTS: [(&str, ObjectSet); 2] =
+    [("2010", ObjectSet::Of2010), ("today", ObjectSet::OfToday)];
 
 /// The grammar of matches, fields, simulators and roles.
 pub fn of_matches() -> Grammar {
@@ -34,6 +39,14 @@ fn game() -> ElementRule {
             half,
             "how long a half is; by default as in the simulator's rules",
         ))
+        .attribute(
+            AttributeRule::new(
+                "objects",
+                Kind::Word(OBJECTS.map(|(name, _)| name).to_vec()),
+                "how ball and goals look: orange, yellow and blue as in 2010, or black and white as today",
+            )
+            .or("2010"),
+        )
         .children("team")
 }
 

@@ -9,7 +9,7 @@ use monas::{
     Agent, ChartListener, ConfigurationBundle, HostConfig, LinkConfig, Module, Registry, RunHash, Talws,
 };
 use monas_gamecontroller::{ControlReceiver, ControlSender, RuleBook};
-use monas_robot::{BodySettings, Robot, Surroundings};
+use monas_robot::{BodySettings, ObjectSet, Robot, Surroundings};
 use monas_sim::{FieldGeometry, MatchRules, Physics, Radio, Setup, SharedField, SimulatedWorld, TeamSetup};
 use monas_tape::Tape;
 use yase::{Diagnostic, Source};
@@ -135,6 +135,7 @@ pub struct MatchPlan {
     physics: Physics,
     rules: MatchRules,
     radio: Radio,
+    objects: ObjectSet,
     teams: [TeamSetup; 2],
     robots: Vec<RobotPlan>,
     registry: Registry,
@@ -224,6 +225,7 @@ impl MatchPlan {
             physics: file.physics,
             rules: file.rules,
             radio: file.radio,
+            objects: file.objects,
             teams,
             robots,
             registry,
@@ -447,6 +449,7 @@ impl MatchPlan {
             physics: self.physics,
             rules: self.rules,
             radio: self.radio,
+            objects: self.objects,
             teams: self.teams,
             robots: lineup.collect(),
             seed,

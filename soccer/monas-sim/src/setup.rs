@@ -1,8 +1,10 @@
 //! Configuration of a world.
 
+use monas_robot::ObjectSet;
+
 use crate::{FieldGeometry, FieldSide, MatchRules, Physics, Radio, RobotSetup, TeamColour, TeamSetup};
 
-/// Configuration of a world: field, physics, rules, radio, teams and random seed.
+/// Configuration of a world: field, physics, rules, radio, objects, teams and random seed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Setup {
     /// The field.
@@ -13,6 +15,8 @@ pub struct Setup {
     pub rules: MatchRules,
     /// The radio.
     pub radio: Radio,
+    /// How ball and goals look.
+    pub objects: ObjectSet,
     /// The two teams.
     pub teams: [TeamSetup; 2],
     /// The robots of both teams, in the order of their indices.
@@ -32,6 +36,7 @@ impl Setup {
             physics: Physics::default(),
             rules: MatchRules::default(),
             radio: Radio::default(),
+            objects: ObjectSet::default(),
             teams: [
                 team(1, "Blue", TeamColour::Blue, FieldSide::Left),
                 team(2, "Red", TeamColour::Red, FieldSide::Right),

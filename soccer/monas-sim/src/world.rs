@@ -1,5 +1,7 @@
 //! The simulated world, advanced step by step.
 
+use monas_robot::ObjectSet;
+
 use crate::arena::{Arena, BallObstacle};
 use crate::body::{BodyEvent, SimulatedBody};
 use crate::camera::CameraView;
@@ -24,6 +26,7 @@ use crate::{
 pub struct SimulatedWorld {
     rules: MatchRules,
     radio: Radio,
+    objects: ObjectSet,
     seed: u64,
     teams: [TeamSetup; 2],
     now: Snapshot,
@@ -57,7 +60,7 @@ impl SimulatedWorld {
     /// [`OutOfRange`](ErrorKind::OutOfRange) and [`Inconsistent`](ErrorKind::Inconsistent) for
     /// parameters, [`Lineup`](ErrorKind::Lineup) for teams and robots.
     pub fn new(setup: Setup) -> Result<Self, Error> {
-        let Setup { field, physics, rules, radio, teams, robots, seed } = setup;
+        let Setup { field, physics, rules, radio, objects, teams, robots, seed } = setup;
         field.validate()?;
         physics.validate()?;
         rules.validate()?;
@@ -81,6 +84,7 @@ impl SimulatedWorld {
             steps: 0,
             rules,
             radio,
+            objects,
             seed,
             teams,
         };
@@ -199,6 +203,11 @@ impl SimulatedWorld {
     /// The numbers of the radio.
     pub fn radio(&self) -> &Radio {
         &self.radio
+    }
+
+    /// How ball and goals look.
+    pub fn objects(&self) -> ObjectSet {
+        self.objects
     }
 
     /// The seed of all random numbers.

@@ -1,6 +1,6 @@
 //! From images to sightings, lines and border.
 
-use monas_robot::{Colour, FieldColours, Image, Images, ObjectKind, Sensors, Sighting, Sightings};
+use monas_robot::{Colour, FieldColours, Image, Images, ObjectKind, ObjectSet, Sensors, Sighting, Sightings};
 use monas_vision::{
     Camera, FieldObjects, GoalPaint, GoalPost, GroundPoint, HeadPose, Jersey, LineSegment, PostSide, Sight,
     Vision,
@@ -14,10 +14,13 @@ use crate::{FieldLine, FieldLines, FieldPoint};
 /// derived from pixels.
 ///
 /// The pose of a camera follows from the head joints and the inclination of the torso at the time
-/// of the image.
+/// of the image. How ball and goals look, and the colours with which the calibration begins, are in
+/// the message of the images: who provides the images knows the field, and a role works on any.
 #[derive(Clone, Debug)]
 pub struct ImageInterpreter {
     vision: Vision,
+    /// How the objects look for which `vision` looks.
+    objects: ObjectSet,
     /// The colours of the images with which the calibration began.
     colours: Option<FieldColours>,
 }
@@ -32,9 +35,10 @@ pub struct Interpretation {
 }
 
 impl Default for ImageInterpreter {
-    /// Looks for the ball and the goals of 2010.
+    /// Looks for the ball and the goals of 2010, until images have others.
     fn default() -> ImageInterpreter {
-        ImageInterpreter { vision: Vision::new(FieldObjects::OF_2010), colours: None }
+        let objects = ObjectSet::default();
+        ImageInterpreter { vision: Vision::new(field_objects(objects)), objects, colours: None }
     }
 }
 
@@ -55,11 +59,7 @@ impl ImageInterpreter {
         images: &Images,
         sensors: &Sensors,
     ) -> Result<Interpretation, monas_vision::Error> {
-        if images.colours.is_some() && images.colours != self.colours {
-            self.colours.clone_from(&images.colours);
-            let model = self.colours.as_ref().map(colour_model).unwrap_or_default();
-            self.vision = Vision::starting_from(FieldObjects::OF_2010, model);
-        }
+        self.begin_anew(images);
         let mut sightings = Sightings {
             taken_at: images.taken_at,
             head_yaw: sensors.head_yaw,
@@ -75,6 +75,22 @@ impl ImageInterpreter {
         }
         let lines = FieldLines { taken_at: images.taken_at, lines: longest(lines), border: spread(border) };
         Ok(Interpretation { sightings, lines })
+    }
+
+    /// Begins the calibration anew if the images have other objects or colours than those before.
+    fn begin_anew(&mut self, images: &Images) {
+        let has_new_colours = images.colours.is_some() && images.colours != self.colours;
+        if has_new_colours {
+            self.colours.clone_from(&images.colours);
+        }
+        if has_new_colours || images.objects() != self.objects {
+            self.objects = images.objects();
+            let objects = field_objects(self.objects);
+            self.vision = match &self.colours {
+                Some(colours) => Vision::starting_from(objects, colour_model(colours)),
+                None => Vision::new(objects),
+            };
+        }
     }
 
     fn add(
@@ -100,7 +116,11 @@ impl ImageInterpreter {
         border.extend_from_slice(&seen.border_points);
         let is_known =
             |objects: &[Sighting], found: &Sighting| objects.iter().any(|known| is_same(known, found));
-        let ball = seen.ball.iter().map(|ball| sighting(ObjectKind::Ball, Colour::Orange, ball));
+        let ball_colour = match self.objects {
+            ObjectSet::Of2010 => Colour::Orange,
+            ObjectSet::OfToday => Colour::White,
+        };
+        let ball = seen.ball.iter().map(|ball| sighting(ObjectKind::Ball, ball_colour, ball));
         let posts = seen.posts.iter().map(post);
         let robots = seen.robots.iter().map(|robot| {
             let colour = match robot.jersey {
@@ -116,6 +136,13 @@ impl ImageInterpreter {
             }
         }
         Ok(())
+    }
+}
+
+fn field_objects(objects: ObjectSet) -> FieldObjects {
+    match objects {
+        ObjectSet::Of2010 => FieldObjects::OF_2010,
+        ObjectSet::OfToday => FieldObjects::OF_TODAY,
     }
 }
 
@@ -188,6 +215,8 @@ fn sighting(kind: ObjectKind, colour: Colour, sight: &Sight) -> Sighting {
 
 #[cfg(test)]
 mod tests {
+    use monas_vision::render::{Light, Renderer, Scene};
+
     use super::*;
 
     #[test]
@@ -197,6 +226,43 @@ mod tests {
         let images = Images { taken_at: 1, images: vec![image], ..Images::default() };
         let error = ImageInterpreter::default().interpret(&images, &Sensors::default()).unwrap_err();
         assert_eq!(error.kind(), monas_vision::ErrorKind::Length);
+    }
+
+    /// An image of a ball 1 m ahead and of a goal 2 m behind it, with the objects of a time.
+    fn image(objects: ObjectSet) -> Images {
+        let (width, height, angle_of_view, camera_height) = (640, 480, 0.8343, 0.5);
+        let head = HeadPose { height: camera_height, pitch: 0.25, ..HeadPose::default() };
+        let camera = Camera::new(width, height, angle_of_view, &head.robot_from_camera()).unwrap();
+        let scene = Scene {
+            markings: Default::default(),
+            objects: field_objects(objects),
+            ball: Some(Point2::new(1.0, 0.0)),
+            robots: vec![],
+            variant: 1,
+        };
+        let mut pixels = Vec::new();
+        Renderer::default().draw(&scene, &camera, &Light::default(), 1, &mut pixels).unwrap();
+        let (width, height) = (width as u32, height as u32);
+        let image = Image { width, height, angle_of_view, camera_height, camera_tilt: 0.25, pixels };
+        Images { images: vec![image], objects: objects.into(), ..Images::default() }
+    }
+
+    #[test]
+    fn it_looks_for_the_objects_that_images_have() {
+        let mut interpreter = ImageInterpreter::default();
+        let mut colours = |images: &Images| {
+            let seen = interpreter.interpret(images, &Sensors::default()).unwrap().sightings.objects;
+            let of = |is_it: fn(ObjectKind) -> bool| {
+                seen.iter().filter(|one| is_it(one.kind())).map(Sighting::colour).collect::<Vec<_>>()
+            };
+            (of(|kind| kind == ObjectKind::Ball), of(|kind| kind != ObjectKind::Ball))
+        };
+        let (today, of_2010) = (image(ObjectSet::OfToday), image(ObjectSet::Of2010));
+        assert_eq!(colours(&of_2010), (vec![Colour::Orange], vec![Colour::Yellow; 2]));
+        assert_eq!(colours(&today), (vec![Colour::White], vec![Colour::White; 2]));
+        assert_eq!(colours(&of_2010), (vec![Colour::Orange], vec![Colour::Yellow; 2]));
+        let unmarked = Images { objects: ObjectSet::Of2010.into(), ..today };
+        assert_eq!(colours(&unmarked).0, [], "no orange ball is there");
     }
 
     #[test]

@@ -174,6 +174,8 @@ fn a_body_begins_with_the_table_that_it_names() {
     for (body, expected) in [
         ("<body vision=\"images\" colours=\"lmaps.xml\"/>", "did you mean `lamps.xml`?"),
         ("<body colours=\"lamps.xml\"/>", "lacks the attribute `vision`"),
+        ("<body image_width=\"640\"/>", "lacks the attribute `vision`"),
+        ("<body vision=\"images\" image_width=\"500\"/>", "`160`, `320`"),
         ("<body vision=\"images\" colours=\"broken.xml\"/>", "broken.xml:7:"),
     ] {
         let wrong = check(body);

@@ -6,7 +6,7 @@ use super::{AttributeRule, ElementRule, Grammar, Identity, Kind};
 use monas_core::agent::FailurePolicy;
 use monas_core::frequency::Frequency;
 use monas_core::monitors::ViolationResponse;
-use monas_robot::CameraOutput;
+use monas_robot::{CameraOutput, IMAGE_WIDTHS};
 
 impl Grammar {
     /// Agents, providers, links and modules, inside `<agents>` or not: the setup of one host.
@@ -143,6 +143,11 @@ fn body() -> ElementRule {
                 "what its cameras deliver: finished sightings, or images",
             )
             .or("sightings"),
+            attribute(
+                "image_width",
+                Kind::Word(IMAGE_WIDTHS.map(|(name, _)| name).to_vec()),
+                "width of its images, pixels; their height is three quarters of it; those of the field have 320 by default",
+            ),
             attribute(
                 "colours",
                 Kind::File,

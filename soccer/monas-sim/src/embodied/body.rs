@@ -3,15 +3,15 @@
 use std::time::Duration;
 
 use monas_robot::{
-    Actuators, Anatomy, Announcement, Camera, Error, ErrorKind, Limits, ObjectKind, Percepts, Posture, Robot,
-    Skill,
+    Actuators, Anatomy, Announcement, Camera, Error, ErrorKind, IMAGE_WIDTHS, Limits, ObjectKind, ObjectSet,
+    Percepts, Posture, Robot, Skill,
 };
 use narukom::Timestamp;
 
 use super::image_camera::ImageCamera;
 use super::skill::SkillTrack;
 use super::{SharedField, announce};
-use crate::{BodyPhase, Command, Motion, Physics, STEP, Senses, Side, Sighting, Velocity};
+use crate::{BodyPhase, Command, Motion, Physics, STEP, Senses, Side, Sighting, SimulatedWorld, Velocity};
 
 /// Interval at which an unchanged announcement is repeated, as by a game controller.
 const ANNOUNCE_EVERY: Duration = Duration::from_millis(500);
@@ -87,11 +87,12 @@ impl FieldBody {
     }
 
     fn see(&self, now: Timestamp) -> Option<monas_robot::Sightings> {
+        let objects = self.pitch.with_world(SimulatedWorld::objects);
         self.senses.new_picture.then(|| monas_robot::Sightings {
             taken_at: now.as_nanos(),
             head_yaw: self.senses.head_yaw,
             head_pitch: self.senses.head_pitch,
-            objects: self.senses.sightings.iter().map(sighting).collect(),
+            objects: self.senses.sightings.iter().map(|seen| sighting(seen, objects)).collect(),
         })
     }
 
@@ -163,6 +164,20 @@ impl Robot for FieldBody {
         Ok(())
     }
 
+    fn set_image_width(&mut self, width: u32) -> Result<(), Error> {
+        if !IMAGE_WIDTHS.iter().any(|(_, known)| *known == width) {
+            let widths = IMAGE_WIDTHS.map(|(name, _)| name).join(", ");
+            let message = format!("images have a width of {widths} pixels, not {width}");
+            return Err(Error::new(ErrorKind::Configuration, message));
+        }
+        let Some(cameras) = self.cameras.take() else {
+            let message = "the field robot delivers sightings, which have no width in pixels";
+            return Err(Error::new(ErrorKind::Configuration, message));
+        };
+        self.cameras = Some(cameras.with_width(width));
+        Ok(())
+    }
+
     /// The body sits down as soon as it stands; a lying body stays down.
     fn rest(&mut self, _now: Timestamp) -> Result<(), Error> {
         self.rests = true;
@@ -231,10 +246,13 @@ fn posture(phase: BodyPhase, on_field: bool) -> Posture {
     }
 }
 
-fn sighting(seen: &Sighting) -> monas_robot::Sighting {
+fn sighting(seen: &Sighting, objects: ObjectSet) -> monas_robot::Sighting {
+    let of_2010 = |colour| if objects == ObjectSet::Of2010 { colour } else { monas_robot::Colour::White };
     let (kind, colour, percept) = match seen {
-        Sighting::Ball(percept) => (ObjectKind::Ball, monas_robot::Colour::Orange, percept),
-        Sighting::Post { goal, side, percept } => (post(*side), announce::goal_colour(*goal), percept),
+        Sighting::Ball(percept) => (ObjectKind::Ball, of_2010(monas_robot::Colour::Orange), percept),
+        Sighting::Post { goal, side, percept } => {
+            (post(*side), of_2010(announce::goal_colour(*goal)), percept)
+        }
         Sighting::Robot { colour, percept } => (ObjectKind::Robot, announce::team_colour(*colour), percept),
     };
     monas_robot::Sighting {
@@ -258,7 +276,7 @@ mod tests {
     use monas_robot::SkillResult;
 
     use super::*;
-    use crate::{FieldSide, RobotSetup, Setup, SimulatedWorld, TeamColour, TeamSetup};
+    use crate::{FieldSide, RobotSetup, Setup, TeamColour, TeamSetup};
 
     fn pitch() -> SharedField {
         let team =
@@ -268,6 +286,7 @@ mod tests {
             physics: Default::default(),
             rules: Default::default(),
             radio: Default::default(),
+            objects: Default::default(),
             teams: [team(1, TeamColour::Blue, FieldSide::Left), team(2, TeamColour::Red, FieldSide::Right)],
             robots: vec![RobotSetup { team: 1, number: 2 }],
             seed: 7,
@@ -287,6 +306,69 @@ mod tests {
     fn its_cycle_is_the_number_of_steps_that_is_nearest_to_its_rate() {
         let cycle = |body_rate| cycle(&Physics { body_rate, ..Physics::default() }).as_millis();
         assert_eq!([50.0, 100.0, 10.0, 83.0].map(cycle), [20, 10, 100, 10]);
+    }
+
+    /// What a body perceives with the first images or sightings.
+    fn first_percepts(body: &mut FieldBody, pitch: &SharedField) -> Percepts {
+        let mut percepts = Percepts::default();
+        for cycle in 0..50 {
+            (0..2).for_each(|_| pitch.step());
+            percepts.clear_news();
+            body.sense(Timestamp::from_nanos(cycle * 20_000_000), &mut percepts).unwrap();
+            let objects = percepts.sightings.as_ref().is_some_and(|seen| !seen.objects.is_empty());
+            if percepts.images.is_some() || objects {
+                return percepts;
+            }
+        }
+        panic!("no images, and no sightings with objects, in a second");
+    }
+
+    #[test]
+    fn images_have_the_width_of_the_configuration_and_the_objects_of_the_world() {
+        for (objects, width) in [(ObjectSet::Of2010, None), (ObjectSet::OfToday, Some(640))] {
+            let pitch = SharedField::new(
+                SimulatedWorld::new(Setup { objects, ..Setup::three_against_three(1) }).unwrap(),
+            );
+            let mut body = pitch.body(0).unwrap();
+            body.deliver_images().unwrap();
+            width.map_or(Ok(()), |width| body.set_image_width(width)).unwrap();
+            let images = first_percepts(&mut body, &pitch).images.unwrap();
+            let width = width.unwrap_or(320);
+            assert_eq!((images.images.len(), images.objects()), (2, objects));
+            for image in images.images {
+                assert_eq!((image.width, image.height), (width, width * 3 / 4));
+                assert_eq!(image.pixels.len() as u32, 2 * image.width * image.height);
+            }
+        }
+    }
+
+    #[test]
+    fn a_width_that_images_cannot_have_is_refused() {
+        let pitch = pitch();
+        let mut body = pitch.body(0).unwrap();
+        let error = body.set_image_width(640).unwrap_err().to_string();
+        assert!(error.contains("delivers sightings"), "{error}");
+        body.deliver_images().unwrap();
+        let error = body.set_image_width(641).unwrap_err().to_string();
+        assert!(error.contains("160, 320, 640 pixels, not 641"), "{error}");
+    }
+
+    #[test]
+    fn sightings_of_today_have_no_colours_of_goals() {
+        let colours = |objects| {
+            let setup = Setup { objects, ..Setup::three_against_three(1) };
+            let pitch = SharedField::new(SimulatedWorld::new(setup).unwrap());
+            let mut body = pitch.body(1).unwrap();
+            let seen = first_percepts(&mut body, &pitch).sightings.unwrap().objects;
+            let seen = seen.iter().filter(|seen| seen.kind() != ObjectKind::Robot);
+            let mut colours: Vec<i32> = seen.map(|seen| seen.colour).collect();
+            colours.sort_unstable();
+            colours.dedup();
+            colours
+        };
+        use monas_robot::Colour;
+        assert_eq!(colours(ObjectSet::OfToday), [Colour::White as i32]);
+        assert!(!colours(ObjectSet::Of2010).contains(&(Colour::White as i32)));
     }
 
     #[test]

@@ -1,16 +1,16 @@
 //! The cameras of a body that delivers images.
 
-use monas_robot::{Error, ErrorKind, Image, Images};
+use monas_robot::{Error, ErrorKind, Image, Images, ObjectSet};
 use monas_vision::render::{FieldMarkings, Light, Renderer, RobotFigure, Scene};
 use monas_vision::{Camera, FieldObjects, HeadPose, Jersey};
 use nalgebra::{Isometry3, Point2, UnitQuaternion, Vector3};
 use narukom::Timestamp;
 
-use crate::{Physics, SimulatedWorld, TeamColour};
+use crate::{SimulatedWorld, TeamColour};
 
-/// Size of an image, pixels (Nao: 320 by 240 at 30 images a second).
-const WIDTH: usize = 320;
-const HEIGHT: usize = 240;
+/// The usual width of an image, pixels. Images of 640 by 480 take four times as long to draw, and
+/// show objects up to twice as far away, which play on a field of 6 m hardly needs.
+const WIDTH: u32 = 320;
 /// Standard deviation of noise and blur (chosen: those of an image that is sharp).
 const NOISE: f64 = 3.0;
 const BLUR: f64 = 0.6;
@@ -20,14 +20,29 @@ const LIGHT_PERIOD: f64 = 37.0;
 /// The two cameras of a robot, which take images from their true pose.
 ///
 /// The light changes with the time: its brightness, its colour and the side from which it comes.
-#[derive(Default)]
 pub(super) struct ImageCamera {
     renderer: Renderer,
+    /// The width of an image, pixels.
+    width: usize,
+    /// The height of an image, pixels.
+    height: usize,
     /// The number of images so far, which seeds their noise.
     taken: u64,
 }
 
+impl Default for ImageCamera {
+    fn default() -> ImageCamera {
+        ImageCamera { renderer: Renderer::default(), width: 0, height: 0, taken: 0 }.with_width(WIDTH)
+    }
+}
+
 impl ImageCamera {
+    /// The camera with images of this width, pixels, three quarters as high.
+    pub(super) fn with_width(self, width: u32) -> ImageCamera {
+        let width = width as usize;
+        ImageCamera { width, height: width * 3 / 4, ..self }
+    }
+
     /// The images of both cameras; none of a robot that does not stand on the field.
     pub(super) fn take(
         &mut self,
@@ -40,11 +55,12 @@ impl ImageCamera {
         if !state.phase.is_upright() || !state.on_field {
             return Ok(Images { taken_at, ..Images::default() });
         }
+        let objects = world.objects().into();
         let physics = world.physics();
         let (scene, light) = (scene(world, robot), light(world.time(), world.seed()));
         let images = [0.0, physics.camera_tilt].map(|tilt| self.image(world, robot, tilt, &scene, &light));
         let [upper, lower] = images;
-        Ok(Images { taken_at, images: vec![upper?, lower?], ..Images::default() })
+        Ok(Images { taken_at, images: vec![upper?, lower?], objects, ..Images::default() })
     }
 
     fn image(
@@ -72,14 +88,14 @@ impl ImageCamera {
             Isometry3::from_parts(Vector3::new(position.x, position.y, 0.0).into(), heading);
         let pose = field_from_robot * head.robot_from_camera();
         let view = physics.camera_view_horizontal;
-        let camera = Camera::new(WIDTH, HEIGHT, view, &pose).map_err(refused)?;
+        let camera = Camera::new(self.width, self.height, view, &pose).map_err(refused)?;
         self.taken += 1;
         let seed = world.seed().wrapping_mul(31).wrapping_add(robot as u64) << 32 | self.taken;
-        let mut pixels = Vec::with_capacity(2 * WIDTH * HEIGHT);
+        let mut pixels = Vec::with_capacity(2 * self.width * self.height);
         self.renderer.draw(scene, &camera, light, seed, &mut pixels).map_err(refused)?;
         Ok(Image {
-            width: WIDTH as u32,
-            height: HEIGHT as u32,
+            width: self.width as u32,
+            height: self.height as u32,
             angle_of_view: view,
             camera_height: physics.camera_height,
             camera_tilt: tilt,
@@ -92,7 +108,7 @@ fn refused(error: monas_vision::Error) -> Error {
     Error::new(ErrorKind::Hardware, format!("the camera takes no image: {error}"))
 }
 
-/// What there is to see for a robot, with the objects of 2010.
+/// What there is to see for a robot.
 fn scene(world: &SimulatedWorld, robot: usize) -> Scene {
     let (field, physics) = (world.field(), world.physics());
     let colours = world.referee().colours();
@@ -118,15 +134,19 @@ fn scene(world: &SimulatedWorld, robot: usize) -> Scene {
             centre_circle_radius: field.centre_circle_radius,
             mark_distance: field.mark_distance,
         },
-        objects: objects(physics, field.post_radius, field.line_width),
+        objects: FieldObjects {
+            ball_radius: physics.ball_radius,
+            post_radius: field.post_radius,
+            line_width: field.line_width,
+            ..match world.objects() {
+                ObjectSet::Of2010 => FieldObjects::OF_2010,
+                ObjectSet::OfToday => FieldObjects::OF_TODAY,
+            }
+        },
         ball: Some(Point2::from(world.ball().position)),
         robots: robots.collect(),
         variant: world.seed(),
     }
-}
-
-fn objects(physics: &Physics, post_radius: f64, line_width: f64) -> FieldObjects {
-    FieldObjects { ball_radius: physics.ball_radius, post_radius, line_width, ..FieldObjects::OF_2010 }
 }
 
 /// The light at a time.
