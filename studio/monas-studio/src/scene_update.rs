@@ -225,6 +225,7 @@ fn ground(ground: &Ground) -> SceneEntity {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::SeenLine;
 
     #[test]
     fn entities_are_replaced_and_those_that_vanish_are_deleted() {

@@ -160,8 +160,9 @@ impl BallSearch {
         if !(0.68 - slack..=1.40 + slack).contains(&ratio) {
             return None;
         }
-        // Most of it is in the image, or its patches do not count.
-        if look.objects.ball == BallPattern::BlackAndWhite && look.rays_within(&circle) < 0.7 * RAYS as f64 {
+        // Most of it is in the image and the patches are visible, or they do not count.
+        let shows_patches = circle.radius >= PATCHES && look.rays_within(&circle) >= 0.7 * RAYS as f64;
+        if look.objects.ball == BallPattern::BlackAndWhite && !shows_patches {
             return None;
         }
         self.find_edges(look, &circle);
