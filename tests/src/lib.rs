@@ -11,6 +11,7 @@
 //! # Ok::<(), String>(())
 //! ```
 
+mod ball_knowledge;
 pub mod dice;
 #[cfg(doctest)]
 mod readmes;
@@ -18,6 +19,7 @@ mod row;
 mod season;
 mod team_play;
 
+pub use ball_knowledge::{BallKnowledge, TODAY};
 pub use row::{MatchRow, play};
 pub use season::{SEASON_LENGTH, SEASON_SEEDS, SHORT_LENGTH, SHORT_SEEDS, SeasonTable, season, short_rows};
 pub use team_play::{PassCounts, StateTime, TeamPlay, TeamPlayObserver};

@@ -8,6 +8,7 @@ use monas_nao as _; // the body registers itself at link time
 use monas_robot::{Disturbances, ObjectKind, Percepts, Robot, Sighting, WrappedBody};
 use monas_sim::{MatchRules, Pose, Setup, SharedField, SimulatedWorld, Vector};
 use monas_soccer::image_interpreter::{ImageInterpreter, Interpretation};
+use monas_tests::{BallKnowledge, TODAY};
 use narukom::Timestamp;
 
 /// A world in which play has begun and the robots stand in a corner, but for the one at index 1.
@@ -153,15 +154,32 @@ fn a_robot_that_sees_images_finds_and_moves_the_ball() {
 }
 
 #[test]
-fn the_match_with_images_starts_and_repeats() {
-    let path = monas_tests::root().join("config/match_images.xml");
-    let hash = || {
+fn the_matches_with_images_start_and_repeat() {
+    let hash = |file: &str| {
+        let path = monas_tests::root().join(file);
         let plan = MatchSource::load(&path, &monas::Registry::linked()).unwrap();
         let mut running = plan.start(MatchOptions { seed: 1, ..MatchOptions::default() }).unwrap();
         running.advance(Duration::from_millis(300)).unwrap();
         running.finish().unwrap().hash
     };
-    assert_eq!(hash(), hash());
+    for file in ["config/match_images.xml", "config/match_today.xml"] {
+        assert_eq!(hash(file), hash(file), "{file}");
+    }
+}
+
+#[test]
+fn a_robot_plays_with_todays_objects_from_images() {
+    let play = |images| BallKnowledge::of_match(&TODAY, images, 1, Duration::from_secs(15)).unwrap();
+    let (sightings, images) = (play(None), play(Some(320)));
+    println!("finished sightings: {sightings:?}\nimages: {images:?}");
+    for known in [&sightings, &images] {
+        assert!(known.in_view >= 40, "the ball was in view {} times", known.in_view);
+        assert!(known.known_share() > 0.85, "{} of {} balls", known.known, known.in_view);
+        assert!(known.wrong * 20 <= known.in_view, "{} wrong of {}", known.wrong, known.in_view);
+        assert!(known.error() < 0.1, "distance: {}", known.error());
+        assert!(known.pose_error() < 0.1, "pose: {} m", known.pose_error());
+        assert!(known.kicks >= 1, "{} kicks", known.kicks);
+    }
 }
 
 #[test]
