@@ -4,7 +4,7 @@
 use std::time::Duration;
 
 use monas_match::{MatchOptions, MatchSource};
-use monas_nao as _; // the body registers itself at link time
+use monas_nao::SimulatedNao; // the body registers itself at link time
 use monas_robot::{Disturbances, ObjectKind, Percepts, Robot, Sighting, WrappedBody};
 use monas_sim::{MatchRules, Pose, Setup, SharedField, SimulatedWorld, Vector};
 use monas_soccer::image_interpreter::{ImageInterpreter, Interpretation};
@@ -131,15 +131,26 @@ fn what_images_show_is_where_it_is() {
     assert!(away < 0.25 && wrong_posts * 50 <= posts.len(), "{away} m, {wrong_posts} of {}", posts.len());
 }
 
+/// How the one robot that plays sees.
+#[derive(Clone, Copy, PartialEq)]
+enum Eyes {
+    Blind,
+    Field,
+    Nao,
+}
+
 #[test]
 fn a_robot_that_sees_images_finds_and_moves_the_ball() {
     let blind = Disturbances { loss: 1.0, ..Disturbances::default() };
     let path = monas_tests::root().join("config/match.xml");
-    let displaced = |sees: bool| {
+    let displaced = |eyes: Eyes| {
         let plan = MatchSource::load(&path, &monas::Registry::linked()).unwrap();
         // One robot plays; it sees images or nothing, the others nothing.
         let plan = plan.without_agents(2).embody(move |team, number, mut body| {
-            if (team, number, sees) == (1, 2, true) {
+            if (team, number) == (1, 2) && eyes != Eyes::Blind {
+                if eyes == Eyes::Nao {
+                    body = Box::new(SimulatedNao::new(body).unwrap());
+                }
                 body.deliver_images().unwrap();
                 return body;
             }
@@ -149,8 +160,9 @@ fn a_robot_that_sees_images_finds_and_moves_the_ball() {
         running.advance(Duration::from_secs(20)).unwrap();
         running.pitch().with_world(|world| world.ball().position.norm())
     };
-    assert!(displaced(true) > 0.3, "the ball is where it was");
-    assert!(displaced(false) < 0.05, "blind robots do not find the ball");
+    assert!(displaced(Eyes::Field) > 0.3, "the ball is where it was");
+    assert!(displaced(Eyes::Nao) > 0.3, "the ball is where it was, with a Nao");
+    assert!(displaced(Eyes::Blind) < 0.05, "blind robots do not find the ball");
 }
 
 #[test]
@@ -183,13 +195,27 @@ fn a_robot_plays_with_todays_objects_from_images() {
 }
 
 #[test]
-fn a_body_without_images_says_so() {
+fn a_nao_delivers_the_images_of_the_field() {
     let settings = monas_robot::BodySettings {
         kind: "nao".into(),
         vision: monas_robot::CameraOutput::Images,
         ..Default::default()
     };
-    let field = SharedField::new(world(1));
-    let error = settings.open(field.body(0).map(|body| Box::new(body) as _), 1).map(|_| ()).unwrap_err();
-    assert!(error.to_string().contains("delivers no images"), "{error}");
+    let (field, of_field) = [(); 2].map(|()| SharedField::new(world(3))).into();
+    let mut nao = settings.open(field.body(1).map(|body| Box::new(body) as _), 1).unwrap();
+    let mut disk = of_field.body(1).unwrap();
+    disk.deliver_images().unwrap();
+    let images = |body: &mut dyn Robot, field: &SharedField| {
+        let mut percepts = Percepts::default();
+        let cycles = (0..100).map(|cycle| {
+            field.step();
+            percepts.clear_news();
+            body.sense(Timestamp::from_nanos(cycle * 10_000_000), &mut percepts).unwrap();
+            assert!(percepts.sightings.is_none(), "there are images in place of sightings");
+            percepts.images.take()
+        });
+        cycles.collect::<Vec<_>>()
+    };
+    let (seen, expected) = (images(&mut *nao, &field), images(&mut disk, &of_field));
+    assert!(expected.iter().flatten().count() >= 4 && seen == expected, "other images than the field's");
 }

@@ -1,5 +1,6 @@
 //! Kinds of bodies that configurations can name.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::fmt;
 
@@ -35,23 +36,28 @@ pub struct BodyKind {
 pub type OpenBody = fn(BodySite) -> Result<Box<dyn Robot>, Error>;
 
 /// What a body cannot do, or does in another way than software may expect.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, PartialEq, Eq, Debug)]
 pub struct BodyLimit {
     /// What is limited.
     pub capability: Capability,
     /// How, as a clause: `the robot cannot stand up by itself`.
-    pub effect: &'static str,
+    pub effect: Cow<'static, str>,
 }
 
 impl BodyLimit {
     /// A limit of a skill.
     pub const fn skill(skill: Skill, effect: &'static str) -> BodyLimit {
-        BodyLimit { capability: Capability::Skill(skill), effect }
+        BodyLimit { capability: Capability::Skill(skill), effect: Cow::Borrowed(effect) }
     }
 
     /// A limit of what a topic of [`topics`](crate::topics) carries, given its path.
     pub const fn topic(path: &'static str, effect: &'static str) -> BodyLimit {
-        BodyLimit { capability: Capability::Topic(path), effect }
+        BodyLimit { capability: Capability::Topic(path), effect: Cow::Borrowed(effect) }
+    }
+
+    /// As [`topic`](BodyLimit::topic), with an effect that was found on this computer.
+    pub fn found(path: &'static str, effect: String) -> BodyLimit {
+        BodyLimit { capability: Capability::Topic(path), effect: Cow::Owned(effect) }
     }
 }
 
@@ -164,9 +170,9 @@ impl BodySettings {
     /// body of this kind there. What is returned senses the body, and ignores commands.
     ///
     /// # Errors
-    /// There is no such kind, it has no interface for other processes, or the address cannot be
-    /// used.
-    pub fn serve(&self, simulated: Box<dyn Robot>, address: String) -> Result<Box<dyn Robot>, Error> {
+    /// There is no such kind, it has no interface for other processes, the address cannot be used,
+    /// or the simulated body has no images to deliver.
+    pub fn serve(&self, mut simulated: Box<dyn Robot>, address: String) -> Result<Box<dyn Robot>, Error> {
         let kind = BodyKind::named(&self.kind)?;
         let serve = kind.serve.ok_or_else(|| {
             let message = format!(
@@ -175,6 +181,9 @@ impl BodySettings {
             );
             Error::new(ErrorKind::Configuration, message)
         })?;
+        if self.vision == CameraOutput::Images {
+            simulated.deliver_images()?;
+        }
         let options = self.options.clone();
         serve(BodySite { address: Some(address), options, simulated: Some(simulated) })
     }

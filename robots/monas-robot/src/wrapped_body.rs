@@ -187,7 +187,7 @@ impl Robot for WrappedBody {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Sighting, Sightings, conformance};
+    use crate::{ErrorKind, Sighting, Sightings, conformance};
 
     /// A head that sees one object, ahead.
     struct Head {
@@ -215,6 +215,15 @@ mod tests {
     fn wrapped(disturbances: Disturbances, seed: u64) -> WrappedBody {
         let anatomy = Anatomy::new("head", Duration::from_millis(10));
         WrappedBody::new(Box::new(Head { anatomy, yaw: 0.0 }), disturbances, seed)
+    }
+
+    #[test]
+    fn a_body_without_images_says_so() {
+        let error = wrapped(Disturbances::default(), 7).deliver_images().unwrap_err();
+        assert_eq!(
+            (error.kind(), error.to_string()),
+            (ErrorKind::Configuration, "the head delivers no images".into())
+        );
     }
 
     /// The yaw that is felt and the bearings that are seen in each of 500 cycles after a command.

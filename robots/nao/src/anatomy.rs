@@ -109,6 +109,9 @@ pub(crate) fn limits(joint: usize) -> Limits {
     Limits::new(TABLE[joint].1, TABLE[joint].2)
 }
 
+/// The angles of view of both cameras, from left to right and from top to bottom, rad.
+pub(crate) const VIEW: [f64; 2] = [0.9547, 0.7418];
+
 /// The anatomy of a Nao V6. It sees objects only where a simulation stands in for its cameras.
 pub fn anatomy() -> Anatomy {
     let joint = |&(name, low, high, parent, offset, axis): &JointRow| Joint {
@@ -124,7 +127,7 @@ pub fn anatomy() -> Anatomy {
         walk_x: Limits::new(-0.15, 0.3),
         walk_y: Limits::symmetric(0.15),
         walk_turn: Limits::symmetric(1.2),
-        camera: Some(Camera { horizontal: 0.9547, vertical: 0.7418, height: 0.5 }),
+        camera: Some(Camera { horizontal: VIEW[0], vertical: VIEW[1], height: 0.5 }),
         skills: vec![
             Skill::KickLeft,
             Skill::KickRight,

@@ -96,6 +96,11 @@ impl NaoControl {
         &mut self.anatomy
     }
 
+    /// The measured angles of all joints.
+    pub(crate) fn measured(&self) -> &JointAngles {
+        &self.measured
+    }
+
     /// Takes a sensor packet.
     pub(crate) fn receive(&mut self, packet: &SensorPacket) {
         self.sensors.clone_from(packet);

@@ -106,15 +106,23 @@ fn wrist_in_torso(side: Side, angles: &JointAngles) -> Isometry3<f64> {
 
 /// The pose of a camera in the torso's frame; x is its line of sight.
 pub fn camera_in_torso(camera: NaoCamera, angles: &JointAngles) -> Isometry3<f64> {
-    let (offset, tilt) = match camera {
-        NaoCamera::Top => (Vector3::new(0.058_71, 0.0, 0.063_64), 1.2_f64),
-        NaoCamera::Bottom => (Vector3::new(0.050_71, 0.0, 0.017_74), 39.7),
+    let offset = match camera {
+        NaoCamera::Top => Vector3::new(0.058_71, 0.0, 0.063_64),
+        NaoCamera::Bottom => Vector3::new(0.050_71, 0.0, 0.017_74),
     };
     Translation3::new(0.0, 0.0, NECK_Z)
         * yaw(angles[NaoJoint::HeadYaw as usize])
         * pitch(angles[NaoJoint::HeadPitch as usize])
         * Translation3::from(offset)
-        * pitch(tilt.to_radians())
+        * pitch(camera_tilt(camera))
+}
+
+/// How much lower a camera looks than the head, rad.
+pub fn camera_tilt(camera: NaoCamera) -> f64 {
+    match camera {
+        NaoCamera::Top => 1.2_f64.to_radians(),
+        NaoCamera::Bottom => 39.7_f64.to_radians(),
+    }
 }
 
 /// Sets yaw and pitch of the head so that the line from the neck through the head points at `point`

@@ -13,10 +13,11 @@
 //!
 //! # Limits
 //!
-//! LoLA has no images, no referee and no radio. Where a simulation stands in for the robot, it
-//! offers them on sockets of their own, beside LoLA's; the camera's delivers objects in place of
-//! images. On a robot they are missing. The walk engine and the motions have no feedback of
-//! balance: they are made for the embedded field and have not been tried on a robot.
+//! LoLA has no images, no referee and no radio. Images come from the cameras through Video4Linux.
+//! Where a simulation stands in for the robot, it offers all three on sockets of their own, beside
+//! LoLA's; the camera's delivers objects, or images if the configuration asks for them. On a robot
+//! referee and radio are missing. The walk engine and the motions have no feedback of balance: they
+//! are made for the embedded field. Nothing of this has been tried on a robot.
 //!
 //! ```
 //! use monas_nao::lola::{Decoded, SENSOR_BYTES, SensorPacket};
@@ -29,8 +30,11 @@
 //! ```
 
 mod anatomy;
+mod camera_thread;
+mod cameras;
 mod control;
 mod error;
+mod frame;
 pub mod kinematics;
 mod leds;
 pub mod lola;
@@ -42,14 +46,17 @@ mod server;
 mod side_channels;
 mod simulated_nao;
 mod socket;
+#[cfg_attr(not(all(target_os = "linux", target_pointer_width = "64")), path = "no_video_device.rs")]
+mod video_device;
 mod walk;
 
 use std::path::Path;
 
-use monas_robot::topics::{ANNOUNCEMENT, HEARD, SAID, SIGHTINGS};
-use monas_robot::{BodyKind, BodyLimit, BodySettings, BodySite, Robot, Surroundings};
+use monas_robot::topics::{ANNOUNCEMENT, HEARD, IMAGES, SAID, SIGHTINGS};
+use monas_robot::{BodyKind, BodyLimit, BodySettings, BodySite, CameraOutput, Robot, Surroundings};
 
 pub use anatomy::{NaoJoint, anatomy};
+pub use cameras::CameraPlaces;
 pub use error::{Error, ErrorKind};
 pub use nao::Nao;
 pub use served_nao::ServedNao;
@@ -60,7 +67,7 @@ pub use walk::{SteppingWalk, WalkEngine, WalkVelocity};
 monas_robot::body_kind!(BodyKind {
     name: "nao",
     summary: "a Nao V6 through LoLA; in simulated time through a LoLA server over the field's body",
-    options: &[],
+    options: cameras::OPTIONS,
     has_own_time: |_| false,
     limits,
     open,
@@ -68,26 +75,38 @@ monas_robot::body_kind!(BodyKind {
     probe,
 });
 
-/// What LoLA lacks, for which a match offers sockets of its own.
-fn limits(_: &BodySettings, surroundings: Surroundings) -> Vec<BodyLimit> {
-    match surroundings {
-        Surroundings::Match => Vec::new(),
-        Surroundings::Own => vec![
-            BodyLimit::topic(SIGHTINGS.path(), "the robot sees nothing: LoLA has no images"),
-            BodyLimit::topic(ANNOUNCEMENT.path(), "the robot hears no referee: LoLA has none"),
-            BodyLimit::topic(HEARD.path(), "the robot hears no team mates: LoLA has no radio"),
-            BodyLimit::topic(SAID.path(), "the robot cannot speak to team mates: LoLA has no radio"),
-        ],
+/// What LoLA lacks, for which simulations offer sockets of their own, and cameras that are missing.
+fn limits(settings: &BodySettings, surroundings: Surroundings) -> Vec<BodyLimit> {
+    let lola = settings.address.as_deref().unwrap_or(lola::SOCKET);
+    if surroundings == Surroundings::Match || side_channels::are_offered(Path::new(lola)) {
+        return Vec::new();
     }
+    let mut limits: Vec<BodyLimit> = match settings.vision {
+        CameraOutput::Sightings => vec![BodyLimit::topic(
+            SIGHTINGS.path(),
+            "the robot sees nothing: its cameras deliver images, with `vision=\"images\"`",
+        )],
+        CameraOutput::Images => CameraPlaces::of(&settings.options)
+            .missing()
+            .into_iter()
+            .map(|effect| BodyLimit::found(IMAGES.path(), effect))
+            .collect(),
+    };
+    limits.extend([
+        BodyLimit::topic(ANNOUNCEMENT.path(), "the robot hears no referee: LoLA has none"),
+        BodyLimit::topic(HEARD.path(), "the robot hears no team mates: LoLA has no radio"),
+        BodyLimit::topic(SAID.path(), "the robot cannot speak to team mates: LoLA has no radio"),
+    ]);
+    limits
 }
 
 /// Opens a Nao: in a simulated world over its body there, else at a socket.
 fn open(site: BodySite) -> Result<Box<dyn Robot>, monas_robot::Error> {
     match site {
         BodySite { simulated: Some(body), address: None, .. } => Ok(Box::new(SimulatedNao::new(body)?)),
-        BodySite { address, .. } => {
+        BodySite { address, options, .. } => {
             let path = address.as_deref().unwrap_or(lola::SOCKET);
-            Ok(Box::new(Nao::open(Path::new(path))?))
+            Ok(Box::new(Nao::open(Path::new(path))?.with_cameras(CameraPlaces::of(&options))))
         }
     }
 }

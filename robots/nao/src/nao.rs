@@ -8,6 +8,7 @@ use std::time::Duration;
 use monas_robot::{Actuators, Anatomy, Error, ErrorKind, JointCommands, Leds, Percepts, Robot};
 use narukom::Timestamp;
 
+use crate::cameras::{CameraPlaces, Cameras};
 use crate::control::NaoControl;
 use crate::lola::SensorPacket;
 use crate::side_channels::RobotChannels;
@@ -33,6 +34,9 @@ pub struct Nao {
     anatomy: Anatomy,
     shared: Arc<SharedControl>,
     channels: Option<RobotChannels>,
+    camera_places: CameraPlaces,
+    /// The cameras, if they deliver images.
+    cameras: Option<Cameras>,
     measured_at: Timestamp,
     thread: Option<JoinHandle<()>>,
 }
@@ -92,13 +96,29 @@ impl Nao {
         drop(state);
         let channels = RobotChannels::connect(path)?;
         anatomy.radio = if channels.is_some() { RADIO } else { 0 };
-        let nao = Nao { anatomy, shared, channels, measured_at: Timestamp::ZERO, thread: Some(thread) };
+        let nao = Nao {
+            anatomy,
+            shared,
+            channels,
+            camera_places: CameraPlaces::default(),
+            cameras: None,
+            measured_at: Timestamp::ZERO,
+            thread: Some(thread),
+        };
         match answers {
             true => Ok(nao),
             false => {
                 Err(Error::new(ErrorKind::Disconnected, format!("no LoLA answers at {}", path.display())))
             }
         }
+    }
+
+    /// The body with its cameras in other places than those of a Nao V6. They are opened by
+    /// [`deliver_images`](Robot::deliver_images), unless a simulation delivers images.
+    #[must_use]
+    pub fn with_cameras(mut self, camera_places: CameraPlaces) -> Nao {
+        self.camera_places = camera_places;
+        self
     }
 }
 
@@ -164,16 +184,32 @@ impl Robot for Nao {
             self.measured_at = now;
         }
         state.control.percepts(self.measured_at, percepts);
+        let angles = *state.control.measured();
         drop(state);
+        if let Some(cameras) = &mut self.cameras {
+            percepts.images = cameras.take(now, &angles);
+        }
         if let Some(channels) = &mut self.channels
             && let Err(error) = channels.receive(percepts)
         {
             tracing::warn!("the simulated camera, referee and radio are gone: {error}");
             self.channels = None;
         }
+        // The simulation has a clock of its own.
         if let Some(sightings) = &mut percepts.sightings {
-            // The simulation has a clock of its own.
             sightings.taken_at = now.as_nanos();
+        }
+        if let Some(images) = percepts.images.as_mut().filter(|_| self.cameras.is_none()) {
+            images.taken_at = now.as_nanos();
+        }
+        Ok(())
+    }
+
+    /// Opens the cameras. A simulation that stands in for the robot delivers images if it has been
+    /// asked to.
+    fn deliver_images(&mut self) -> Result<(), Error> {
+        if self.channels.is_none() {
+            self.cameras = Some(Cameras::start(&self.camera_places)?);
         }
         Ok(())
     }

@@ -18,7 +18,7 @@ use crate::anatomy::{NaoJoint, limits};
 use crate::kinematics::{JointAngles, Side};
 use crate::lola::{ActuatorPacket, CYCLE_SECONDS, JOINTS, SensorPacket, Touch};
 use crate::motions::stand;
-use crate::side_channels::SimulatedChannels;
+use crate::side_channels::{SimulatedChannels, SimulatedView};
 use crate::socket::Socket;
 use joint_motion::JointMotion;
 
@@ -76,6 +76,16 @@ impl LolaServer {
     /// What the body has felt last.
     pub(crate) fn sensors(&self) -> Sensors {
         self.percepts.sensors
+    }
+
+    /// Has the body deliver images in place of sightings.
+    pub(crate) fn deliver_images(&mut self) -> Result<(), Error> {
+        self.body.deliver_images()
+    }
+
+    /// Sends more of images that were sent in part. Returns whether there was a rest.
+    pub(crate) fn send_rest_of_images(&mut self) -> Result<bool, Error> {
+        Ok(self.channels.camera.flush()?)
     }
 
     /// Whether a client is connected.
@@ -168,9 +178,12 @@ impl LolaServer {
         self.sensors.encode(&mut self.bytes);
         absent(self.lola.send(&self.bytes))?;
         let SimulatedChannels { camera, referee, radio } = &mut self.channels;
-        if let Some(sightings) = &self.percepts.sightings {
-            absent(camera.send(sightings))?;
+        let (sightings, images) = (self.percepts.sightings.take(), self.percepts.images.take());
+        if sightings.is_some() || images.is_some() {
+            absent(camera.send(&SimulatedView { sightings, images }))?;
         }
+        // Images do not fit into the buffer of a socket.
+        absent(camera.flush().map(drop))?;
         if let Some(announcement) = &self.percepts.announcement {
             absent(referee.send(announcement))?;
         }

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use monas_robot::{Announcement, Heard, Percepts, Said, Sightings};
+use monas_robot::{Announcement, Heard, Images, Percepts, Said, Sightings};
 
 use crate::error::Error;
 use crate::socket::{MessageSocket, Socket};
@@ -10,21 +10,29 @@ use crate::socket::{MessageSocket, Socket};
 /// A message without content, for the direction in which nothing is sent.
 type Nothing = ();
 
+/// What the simulated cameras deliver: objects in place of images, or images.
+#[derive(Clone, PartialEq, prost::Message)]
+pub(crate) struct SimulatedView {
+    #[prost(message, optional, tag = "1")]
+    pub(crate) sightings: Option<Sightings>,
+    #[prost(message, optional, tag = "2")]
+    pub(crate) images: Option<Images>,
+}
+
 /// The simulation's ends of the sockets.
 ///
 /// LoLA carries neither images nor what the referee says nor the radio of the team. A simulation
-/// offers three more sockets: on the first it sends what the cameras would show, as objects seen in
-/// place of images; on the second the announcements of the referee; on the third the radio messages
+/// offers three more sockets: on the first it sends what the cameras would show; on the second the announcements of the referee; on the third the radio messages
 /// of the team in both directions.
 pub(crate) struct SimulatedChannels {
-    pub(crate) camera: MessageSocket<Sightings, Nothing>,
+    pub(crate) camera: MessageSocket<SimulatedView, Nothing>,
     pub(crate) referee: MessageSocket<Announcement, Nothing>,
     pub(crate) radio: MessageSocket<Heard, Said>,
 }
 
 /// The robot's ends of the sockets.
 pub(crate) struct RobotChannels {
-    camera: MessageSocket<Nothing, Sightings>,
+    camera: MessageSocket<Nothing, SimulatedView>,
     referee: MessageSocket<Nothing, Announcement>,
     radio: MessageSocket<Said, Heard>,
 }
@@ -37,6 +45,11 @@ fn path(lola: &Path, ending: &str) -> PathBuf {
     let mut path = lola.as_os_str().to_owned();
     path.push(format!(".{ending}"));
     path.into()
+}
+
+/// Whether a simulation offers the sockets beside the one of LoLA.
+pub(crate) fn are_offered(lola: &Path) -> bool {
+    ENDINGS.iter().all(|ending| path(lola, ending).exists())
 }
 
 impl SimulatedChannels {
@@ -54,7 +67,7 @@ impl SimulatedChannels {
 impl RobotChannels {
     /// Connects beside the socket of LoLA. On a robot there are no such sockets, and no channels.
     pub(crate) fn connect(lola: &Path) -> Result<Option<RobotChannels>, Error> {
-        if !ENDINGS.iter().all(|ending| path(lola, ending).exists()) {
+        if !are_offered(lola) {
             return Ok(None);
         }
         let [camera, referee, radio] = ENDINGS.map(|ending| Socket::connect(&path(lola, ending)));
@@ -65,9 +78,13 @@ impl RobotChannels {
         }))
     }
 
-    /// Takes what has arrived: the newest sightings and announcement, and all radio messages.
+    /// Takes what has arrived: the newest sightings or images and announcement, and all radio
+    /// messages.
     pub(crate) fn receive(&mut self, percepts: &mut Percepts) -> Result<(), Error> {
-        self.camera.receive(|sightings| percepts.sightings = Some(sightings))?;
+        self.camera.receive(|SimulatedView { sightings, images }| {
+            percepts.sightings = sightings.or(percepts.sightings.take());
+            percepts.images = images.or(percepts.images.take());
+        })?;
         self.referee.receive(|announcement| percepts.announcement = Some(announcement))?;
         self.radio.receive(|heard| percepts.heard.push(heard))
     }

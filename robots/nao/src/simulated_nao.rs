@@ -59,7 +59,15 @@ impl Robot for SimulatedNao {
             self.control.receive(&self.sensors);
         }
         self.control.percepts(now, percepts);
-        Ok(self.channels.receive(percepts)?)
+        self.channels.receive(percepts)?;
+        while self.server.send_rest_of_images()? {
+            self.channels.receive(percepts)?;
+        }
+        Ok(())
+    }
+
+    fn deliver_images(&mut self) -> Result<(), Error> {
+        self.server.deliver_images()
     }
 
     fn act(&mut self, _now: Timestamp, actuators: &Actuators) -> Result<(), Error> {

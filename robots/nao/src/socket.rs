@@ -11,8 +11,9 @@ use prost::Message;
 use crate::error::Error;
 use crate::lola::Decoded;
 
-/// The greatest number of bytes that are kept of an incomplete packet or message.
-const MOST_BYTES: usize = 1 << 16;
+/// The greatest number of bytes that are kept of an incomplete packet or message: more than two
+/// images of 640 by 480 pixels have.
+const MOST_BYTES: usize = 1 << 21;
 
 /// A connection on which nothing arrives for this time has ended.
 const SILENCE: Duration = Duration::from_secs(1);
@@ -97,7 +98,8 @@ impl Socket {
         Ok(())
     }
 
-    fn flush(&mut self) -> Result<(), Error> {
+    /// Sends more of the rest of what was sent in part, as far as the other end has read.
+    pub(crate) fn flush(&mut self) -> Result<(), Error> {
         while let Some(stream) = &mut self.stream
             && !self.unsent.is_empty()
         {
@@ -203,6 +205,12 @@ impl<Sent: Message, Received: Message + Default> MessageSocket<Sent, Received> {
         self.bytes.extend_from_slice(&(message.encoded_len() as u32).to_le_bytes());
         message.encode(&mut self.bytes).map_err(|error| Error::protocol(error.to_string()))?;
         self.socket.send(&self.bytes)
+    }
+
+    /// Sends more of a message that was sent in part. Returns whether there was a rest.
+    pub(crate) fn flush(&mut self) -> Result<bool, Error> {
+        let has_rest = !self.socket.unsent.is_empty();
+        self.socket.flush().map(|()| has_rest)
     }
 
     /// Calls `take` with each message that has arrived.

@@ -281,10 +281,22 @@ fn what_a_body_cannot_do_is_said_with_the_activities_that_rely_on_it() {
     let naos = monas(&["config", "check", "config/nao_sim.xml"]);
     assert_eq!((naos.code, naos.err.as_str()), (Some(0), ""));
     let role = fs::read_to_string(root().join("config/roles/goalie.xml")).expect("the agents of the role");
-    let role = role.replace("<agents>", "<agents>\n  <body kind=\"nao\"/>");
+    let with_body =
+        |body: &str| role.replace("<agents>", &format!("<agents>\n  <body kind=\"nao\" {body}/>"));
+    let cameras = "vision=\"images\" camera_top=\"/dev/null\" camera_bottom=\"/nowhere/camera\"";
+    let (role, seeing) = (with_body(""), with_body(cameras));
     let model = fs::read_to_string(root().join("models/goalie.srm")).expect("the role");
-    let folder = folder(&[("goalie.xml", &role), ("models/goalie.srm", &model)]);
+    let folder = folder(&[("goalie.xml", &role), ("seeing.xml", &seeing), ("models/goalie.srm", &model)]);
     let alone = monas(&["config", "check", &at(folder.path(), "goalie.xml")]);
-    let blind = "body `nao`: the robot sees nothing: LoLA has no images; this concerns `Vision` of Goalie";
+    let blind = "body `nao`: the robot sees nothing: its cameras deliver images, with `vision=\"images\"`; this concerns `Vision` of Goalie";
     assert!(alone.err.contains(blind), "{}", alone.err);
+    // Cameras that are missing on this computer are no errors of the configuration.
+    let seeing = monas(&["config", "check", &at(folder.path(), "seeing.xml")]);
+    assert_eq!(seeing.code, Some(0), "{}", seeing.err);
+    for missing in [
+        "upper camera, see the option `camera_top`: `/dev/null`: it is not a camera of Video4Linux; this",
+        "lower camera, see the option `camera_bottom`: there is no `/nowhere/camera`; this concerns `Vision`",
+    ] {
+        assert!(seeing.err.contains(missing), "{}", seeing.err);
+    }
 }

@@ -21,8 +21,8 @@ impl AgentReader<'_> {
         let (kind, uses) = (body.kind.clone(), self.uses());
         let mut effects: Vec<&str> = Vec::new();
         for limit in &limits {
-            if !effects.contains(&limit.effect) {
-                effects.push(limit.effect);
+            if !effects.contains(&&*limit.effect) {
+                effects.push(&limit.effect);
             }
         }
         for effect in effects {

@@ -1,0 +1,197 @@
+//! A camera with a thread of its own, which keeps the newest image.
+
+use std::io::Result;
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::thread::JoinHandle;
+use std::time::Duration;
+
+use monas_robot::{Error, ErrorKind};
+
+use crate::frame::Frame;
+
+/// The longest wait for an image, after which a thread looks whether it should end.
+const WAIT: Duration = Duration::from_millis(200);
+/// The waits without an image after which a camera counts as gone: about two seconds.
+const LOST_AFTER: u32 = 10;
+/// The pause between two attempts to open a camera.
+const RETRY: Duration = Duration::from_secs(1);
+
+/// What delivers images.
+pub(crate) trait FrameSource {
+    /// The next image. None if there is none within the time, or if it is damaged.
+    ///
+    /// # Errors
+    /// The camera is gone.
+    fn next_frame(&mut self, wait: Duration) -> Result<Option<Frame>>;
+}
+
+/// A camera whose images a thread takes.
+///
+/// The thread opens the camera, again and again if it is missing or gone, and replaces an image
+/// that has not been fetched by the next one.
+pub(crate) struct CameraThread {
+    shared: Arc<SharedFrame>,
+    thread: Option<JoinHandle<()>>,
+}
+
+struct SharedFrame {
+    state: Mutex<FrameState>,
+    /// The thread should end.
+    changed: Condvar,
+}
+
+#[derive(Default)]
+struct FrameState {
+    newest: Option<Frame>,
+    ends: bool,
+}
+
+impl SharedFrame {
+    fn lock(&self) -> MutexGuard<'_, FrameState> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Opens the camera and takes its images, until the thread should end.
+    fn run<Source: FrameSource>(&self, name: &str, open: impl Fn() -> Result<Source>) {
+        let mut reported = String::new();
+        while !self.lock().ends {
+            let taken = open().and_then(|mut source| {
+                reported.clear();
+                self.take_frames(&mut source)
+            });
+            let Err(error) = taken else { return };
+            let message = error.to_string();
+            if message != reported {
+                tracing::warn!("camera `{name}` delivers no images: {message}; it is tried again");
+                reported = message;
+            }
+            // Ended by `drop`.
+            let _ = self.changed.wait_timeout_while(self.lock(), RETRY, |state| !state.ends);
+        }
+    }
+
+    fn take_frames(&self, source: &mut impl FrameSource) -> Result<()> {
+        let mut waits = 0;
+        loop {
+            let frame = source.next_frame(WAIT)?;
+            waits = if frame.is_some() { 0 } else { waits + 1 };
+            if waits > LOST_AFTER {
+                return Err(std::io::Error::other("no image has come for two seconds"));
+            }
+            let mut state = self.lock();
+            if state.ends {
+                return Ok(());
+            }
+            if frame.is_some() {
+                state.newest = frame;
+            }
+        }
+    }
+}
+
+impl CameraThread {
+    /// Starts the thread of the camera that `open` opens.
+    ///
+    /// # Errors
+    /// The system starts no thread.
+    pub(crate) fn start<Source: FrameSource>(
+        name: &'static str,
+        open: impl Fn() -> Result<Source> + Send + 'static,
+    ) -> std::result::Result<CameraThread, Error> {
+        let state = Mutex::new(FrameState::default());
+        let shared = Arc::new(SharedFrame { state, changed: Condvar::new() });
+        let of_thread = shared.clone();
+        let thread = std::thread::Builder::new()
+            .name(name.into())
+            .spawn(move || of_thread.run(name, open))
+            .map_err(|error| Error::new(ErrorKind::Configuration, error.to_string()))?;
+        Ok(CameraThread { shared, thread: Some(thread) })
+    }
+
+    /// Takes the newest image, if it has not been taken yet.
+    pub(crate) fn newest(&self) -> Option<Frame> {
+        self.shared.lock().newest.take()
+    }
+}
+
+impl Drop for CameraThread {
+    fn drop(&mut self) {
+        self.shared.lock().ends = true;
+        self.shared.changed.notify_all();
+        if let Some(thread) = self.thread.take() {
+            let _ = thread.join();
+        }
+    }
+}
+
+/// The clock in which drivers tell the time of an image.
+pub(crate) fn monotonic_time() -> Duration {
+    let now = rustix::time::clock_gettime(rustix::time::ClockId::Monotonic);
+    Duration::new(now.tv_sec as u64, now.tv_nsec as u32)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::{Error, ErrorKind};
+    use std::sync::atomic::{AtomicU64, Ordering};
+    use std::sync::mpsc::{Receiver, Sender, channel};
+
+    use super::*;
+
+    /// A camera that delivers what it receives, and is gone when the other end is.
+    struct Scripted(Receiver<Option<Frame>>);
+
+    impl FrameSource for Scripted {
+        fn next_frame(&mut self, _: Duration) -> Result<Option<Frame>> {
+            self.0.recv().map_err(|_| Error::other("gone"))
+        }
+    }
+
+    fn frame(seconds: u64) -> Frame {
+        Frame { taken_at: Duration::from_secs(seconds), pixels: vec![seconds as u8] }
+    }
+
+    fn state() -> SharedFrame {
+        SharedFrame { state: Mutex::default(), changed: Condvar::new() }
+    }
+
+    /// Runs until the source is gone; returns why it ended.
+    fn run(shared: &SharedFrame, script: impl Fn(&Sender<Option<Frame>>)) -> String {
+        let (sender, receiver) = channel();
+        script(&sender);
+        drop(sender);
+        shared.take_frames(&mut Scripted(receiver)).unwrap_err().to_string()
+    }
+
+    #[test]
+    fn the_newest_image_replaces_those_that_were_not_fetched() {
+        let shared = state();
+        let why =
+            run(&shared, |camera| [1, 2, 3].iter().for_each(|&at| camera.send(Some(frame(at))).unwrap()));
+        assert_eq!((shared.lock().newest.take(), why.as_str()), (Some(frame(3)), "gone"));
+        run(&shared, |camera| [Some(frame(4)), None].into_iter().for_each(|it| camera.send(it).unwrap()));
+        assert_eq!(shared.lock().newest.take(), Some(frame(4)), "a damaged image replaces nothing");
+    }
+
+    #[test]
+    fn a_camera_without_images_counts_as_gone() {
+        let silent = |waits| move |camera: &Sender<_>| (0..waits).for_each(|_| camera.send(None).unwrap());
+        assert_eq!(run(&state(), silent(LOST_AFTER)), "gone");
+        assert_eq!(run(&state(), silent(LOST_AFTER + 1)), "no image has come for two seconds");
+    }
+
+    #[test]
+    fn dropping_a_missing_camera_ends_its_thread() {
+        static OPENED: AtomicU64 = AtomicU64::new(0);
+        let open = || {
+            OPENED.fetch_add(1, Ordering::Relaxed);
+            Err::<Scripted, _>(Error::from(ErrorKind::NotFound))
+        };
+        let camera = CameraThread::start("camera", open).unwrap();
+        while OPENED.load(Ordering::Relaxed) == 0 {
+            std::thread::yield_now();
+        }
+        assert_eq!(camera.newest(), None);
+        drop(camera);
+    }
+}
