@@ -113,7 +113,9 @@ impl NaoControl {
         self.measured_before = std::mem::replace(&mut self.measured, measured);
         let [roll, pitch] = packet.angles.map(f64::from);
         self.falls.measure(roll, pitch);
-        if self.has_weight() && !self.falls.is_inclined() {
+        // Only steps carry the robot: the legs of a skill move without it.
+        let walks = matches!(self.activity, Activity::Active { skill: None });
+        if walks && self.has_weight() && !self.falls.is_inclined() {
             let [x, y, turn] = displacement(&self.measured_before, &self.measured);
             let [before_x, before_y, heading] = self.odometry;
             let (sin, cos) = libm::sincos(heading);

@@ -19,7 +19,6 @@ pub(crate) struct Frame {
 
 /// The pixels of an image from a driver whose rows have `bytes_per_line`; turned by 180 degrees if
 /// the camera is upside down. None if bytes are missing.
-#[cfg_attr(not(target_os = "linux"), expect(dead_code, reason = "only Linux has cameras"))]
 pub(crate) fn upright(bytes: &[u8], bytes_per_line: usize, is_turned: bool) -> Option<Vec<u8>> {
     let row = |row: usize| bytes.get(row * bytes_per_line..)?.get(..ROW);
     let mut pixels = Vec::with_capacity(ROW * HEIGHT);

@@ -113,7 +113,9 @@ impl Motion {
             }
             Skill::StandUp => {
                 let upright = MotionEnd::WhenUpright { at_most: 5.0 };
-                Motion::new(from, &[(0.4, stand()), (0.4, folded(-1.5, 2.0, -1.1))], upright)
+                // The legs are in the stand again before the torso is upright.
+                let folded = folded(-1.5, 2.0, -1.1);
+                Motion::new(from, &[(0.2, folded), (0.1, folded), (0.5, stand())], upright)
             }
         })
     }

@@ -4,16 +4,21 @@
 use monas_nao::SimulatedNao;
 use monas_robot::{Actuators, JointCommands, Percepts, Posture, Robot, Skill};
 use monas_sim::{
-    FieldSide, GameState, Pose, RobotSetup, Setup, SharedField, SimulatedWorld, TeamColour, TeamSetup,
+    BodyPhase, FieldSide, GameState, Physics, Pose, RobotSetup, Setup, SharedField, SimulatedWorld,
+    TeamColour, TeamSetup,
 };
 use narukom::Timestamp;
 
 /// A field with one robot that plays from the beginning.
 fn field() -> SharedField {
+    field_with(Physics::default())
+}
+
+fn field_with(physics: Physics) -> SharedField {
     let team = |number, colour, plays| TeamSetup { number, name: format!("team {number}"), colour, plays };
     let setup = Setup {
         field: Default::default(),
-        physics: Default::default(),
+        physics,
         rules: Default::default(),
         radio: Default::default(),
         objects: Default::default(),
@@ -38,7 +43,10 @@ struct Trial {
 
 impl Trial {
     fn new() -> Trial {
-        let field = field();
+        Trial::on(field())
+    }
+
+    fn on(field: SharedField) -> Trial {
         let nao = SimulatedNao::new(Box::new(field.body(0).unwrap())).unwrap();
         let mut trial = Trial { field, nao, percepts: Percepts::default(), cycle: 0 };
         trial.run(1.5, Actuators::default());
@@ -65,6 +73,23 @@ impl Trial {
 
     fn pose(&self) -> Pose {
         self.field.with_world(|world| world.robots()[0].pose)
+    }
+
+    fn phase(&self) -> BodyPhase {
+        self.field.with_world(|world| world.robots()[0].phase)
+    }
+
+    /// Performs a skill until `ends`; returns the time, s, and the odometry.
+    fn perform(&mut self, skill: Skill, ends: impl Fn(BodyPhase) -> bool) -> (f64, Pose) {
+        let skill_number = self.percepts.sensors.skill_done + 1;
+        let command = Actuators { skill: skill as i32, skill_number, ..Actuators::default() };
+        let (mut way, mut cycles) = (Pose::default(), 0);
+        while !ends(self.phase()) {
+            way = way.compose(&self.run(0.012, command));
+            cycles += 1;
+            assert!(cycles < 1000, "{skill:?} does not end: {:?}", self.phase());
+        }
+        (f64::from(cycles) * 0.012, way)
     }
 
     fn posture(&self) -> Posture {
@@ -130,7 +155,7 @@ fn resting_sits_down_and_relaxes_the_joints() {
     let felt = &trial.percepts.sensors;
     assert_eq!((felt.posture(), felt.relaxed), (Posture::Sitting, true));
     let phase = trial.field.with_world(|world| world.robots()[0].phase);
-    assert_eq!(phase, monas_sim::BodyPhase::Sitting);
+    assert_eq!(phase, BodyPhase::Sitting);
     let joints = trial.percepts.joints.as_ref().unwrap();
     assert!(joints.stiffnesses.iter().all(|&stiffness| stiffness == 0.0));
     let knee = trial.nao.anatomy().joint("LKneePitch").unwrap();
@@ -163,4 +188,47 @@ fn a_fallen_or_lifted_robot_has_no_weight_on_its_soles() {
     assert!((inertial.acceleration_z - 9.81).abs() < 0.1, "{inertial:?}");
     trial.run(2.0, Actuators { skill: Skill::FallRight as i32, skill_number: 1, ..Actuators::default() });
     assert_eq!((trial.posture(), weight(&trial)), (Posture::Fallen, 0.0));
+}
+
+#[test]
+fn skills_take_little_longer_than_those_of_the_field_and_are_no_steps() {
+    for (skill, begins) in [(Skill::DiveRight, 0.1), (Skill::FallLeft, 0.16)] {
+        let mut trial = Trial::new();
+        let (time, way) = trial.perform(skill, |phase| !phase.is_upright());
+        // The legs have to lean first.
+        assert!(time < begins, "{skill:?} begins after {time} s");
+        let fallen =
+            trial.run(1.0, Actuators { skill: skill as i32, skill_number: 1, ..Actuators::default() });
+        let before = trial.pose();
+        let (time, risen) = trial.perform(Skill::StandUp, BodyPhase::is_upright);
+        // The field takes 3.5 s from the moment that the legs are folded.
+        assert!((3.5..3.75).contains(&time), "it stands after {time} s");
+        let settled = trial.run(1.0, Actuators::default());
+        assert_eq!(trial.posture(), Posture::Standing);
+        for felt in [way, fallen, risen, settled] {
+            assert!(felt.position.norm() < 1e-3 && felt.heading.abs() < 1e-3, "{skill:?}: {felt:?}");
+        }
+        assert!((trial.pose().position - before.position).norm() < 0.01, "the legs carry it away");
+    }
+}
+
+#[test]
+fn standing_up_is_tried_again_when_it_fails() {
+    let mut trial = Trial::on(field_with(Physics { stand_up_success: 0.1, ..Physics::default() }));
+    trial.perform(Skill::DiveLeft, BodyPhase::is_fallen);
+    trial.run(1.0, Actuators { skill: Skill::DiveLeft as i32, skill_number: 1, ..Actuators::default() });
+    let mut attempts = 0;
+    while !trial.phase().is_upright() {
+        attempts += 1;
+        assert!(attempts < 60, "it never stands");
+        trial.perform(Skill::StandUp, |phase| !phase.is_fallen());
+        trial.perform(Skill::StandUp, |phase| phase.is_fallen() || phase.is_upright());
+        let number = trial.percepts.sensors.skill_done + 1;
+        let command =
+            Actuators { skill: Skill::StandUp as i32, skill_number: number, ..Actuators::default() };
+        while trial.percepts.sensors.skill_done < number {
+            trial.run(0.012, command);
+        }
+    }
+    assert!(attempts > 1, "the first attempt has succeeded");
 }
