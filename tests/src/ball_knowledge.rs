@@ -19,7 +19,7 @@ const WATCHED: usize = 1;
 /// The settings of a match with today's ball and goals.
 pub const TODAY: [&str; 2] = ["match.objects=today", "simulator.physics.ball_radius=0.05"];
 
-/// Samples of what one robot of a match knows of the ball, and its play.
+/// Samples of the estimate of the ball that one robot of a match has, and its play.
 #[derive(Clone, PartialEq, Debug, Default)]
 pub struct BallKnowledge {
     /// Samples of the robot in play that has the ball in view, not hidden and at most 3 m away.

@@ -6,7 +6,7 @@ use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use monas_robot::{BodyOption, Error, Image, Images, OptionKind};
+use monas_robot::{BodyOption, Error, Image, Images, ObjectSet, OptionKind};
 use narukom::Timestamp;
 
 use crate::anatomy;
@@ -24,11 +24,17 @@ pub(crate) const OPTIONS: &[BodyOption] = &[
         OptionKind::Flag,
         "`0` if the upper camera's images are upright; by default they are turned, since it is mounted upside down",
     ),
+    option(
+        TODAY,
+        OptionKind::Flag,
+        "`1` if the ball is black and white and the goals are white; by default they are of 2010",
+    ),
 ];
 
 const TOP: &str = "camera_top";
 const BOTTOM: &str = "camera_bottom";
 const TURNED: &str = "camera_top_turned";
+const TODAY: &str = "objects_of_today";
 
 const fn option(name: &'static str, kind: OptionKind, doc: &'static str) -> BodyOption {
     BodyOption { name, kind, doc }
@@ -44,11 +50,18 @@ pub struct CameraPlaces {
     /// Whether the upper camera delivers images that are upside down, as it is mounted; they are
     /// turned then.
     pub is_top_turned: bool,
+    /// How ball and goals look.
+    pub objects: ObjectSet,
 }
 
 impl Default for CameraPlaces {
     fn default() -> CameraPlaces {
-        CameraPlaces { top: "/dev/video-top".into(), bottom: "/dev/video-bottom".into(), is_top_turned: true }
+        CameraPlaces {
+            top: "/dev/video-top".into(),
+            bottom: "/dev/video-bottom".into(),
+            is_top_turned: true,
+            objects: ObjectSet::Of2010,
+        }
     }
 }
 
@@ -60,6 +73,10 @@ impl CameraPlaces {
             top: options.get(TOP).map_or(usual.top, PathBuf::from),
             bottom: options.get(BOTTOM).map_or(usual.bottom, PathBuf::from),
             is_top_turned: options.get(TURNED).is_none_or(|flag| flag != "0"),
+            objects: match options.get(TODAY).is_some_and(|flag| flag == "1") {
+                true => ObjectSet::OfToday,
+                false => ObjectSet::Of2010,
+            },
         }
     }
 
@@ -105,6 +122,7 @@ impl fmt::Display for CameraError {
 pub(crate) struct Cameras {
     threads: [CameraThread; 2],
     pair: FramePair,
+    objects: ObjectSet,
 }
 
 impl Cameras {
@@ -124,7 +142,8 @@ impl Cameras {
             })
         };
         let top = thread(TOP, &places.top, places.is_top_turned)?;
-        Ok(Cameras { threads: [top, thread(BOTTOM, &places.bottom, false)?], pair: FramePair::default() })
+        let threads = [top, thread(BOTTOM, &places.bottom, false)?];
+        Ok(Cameras { threads, pair: FramePair::default(), objects: places.objects })
     }
 
     /// The newest images, with the pose that the cameras have in the posture of the joints. Never
@@ -140,7 +159,8 @@ impl Cameras {
         // The age of the images is the same on both clocks.
         let age = clock.saturating_sub(taken_at);
         let taken_at = now.as_nanos().saturating_sub(age.as_nanos() as u64);
-        Some(message(taken_at, frames, angles))
+        let objects = self.objects.into();
+        Some(Images { objects, ..message(taken_at, frames, angles) })
     }
 }
 
@@ -148,7 +168,7 @@ impl Cameras {
 fn message(taken_at: u64, frames: [Option<Frame>; 2], angles: &JointAngles) -> Images {
     let cameras = [NaoCamera::Top, NaoCamera::Bottom].into_iter().zip(frames);
     let images = cameras.filter_map(|(camera, frame)| Some(image(camera, frame?, angles)));
-    Images { taken_at, images: images.collect(), colours: None }
+    Images { taken_at, images: images.collect(), ..Images::default() }
 }
 
 fn image(camera: NaoCamera, frame: Frame, angles: &JointAngles) -> Image {
@@ -314,7 +334,8 @@ mod tests {
 
     #[test]
     fn missing_cameras_deliver_nothing_and_do_not_stop_the_body() {
-        let places = CameraPlaces { top: "/dev/null".into(), bottom: "/nowhere".into(), is_top_turned: true };
+        let places =
+            CameraPlaces { top: "/dev/null".into(), bottom: "/nowhere".into(), ..CameraPlaces::default() };
         let mut cameras = Cameras::start(&places).unwrap();
         assert_eq!(cameras.take(Timestamp::from_nanos(5), &stand()), None);
     }

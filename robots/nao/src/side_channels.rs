@@ -22,8 +22,8 @@ pub(crate) struct SimulatedView {
 /// The simulation's ends of the sockets.
 ///
 /// LoLA carries neither images nor what the referee says nor the radio of the team. A simulation
-/// offers three more sockets: on the first it sends what the cameras would show; on the second the announcements of the referee; on the third the radio messages
-/// of the team in both directions.
+/// offers three more sockets: on the first it sends what the cameras would show; on the second the
+/// announcements of the referee; on the third the radio messages of the team in both directions.
 pub(crate) struct SimulatedChannels {
     pub(crate) camera: MessageSocket<SimulatedView, Nothing>,
     pub(crate) referee: MessageSocket<Announcement, Nothing>,

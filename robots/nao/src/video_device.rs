@@ -238,8 +238,8 @@ impl Mapping {
     /// The buffer is dequeued as long as the bytes are used: the driver writes into one in its
     /// queue.
     unsafe fn bytes(&self) -> &[u8] {
-        // SAFETY: the mapping is readable, `length` bytes long, and lives as long as `self`; nothing
-        // writes into it by the contract of this function.
+        // SAFETY: the mapping is readable, `length` bytes long, and lives as long as `self`. The
+        // driver does not write into it by the contract of this function.
         unsafe { std::slice::from_raw_parts(self.start.as_ptr(), self.length) }
     }
 }

@@ -1,4 +1,4 @@
-//! What a robot knows of the ball in matches on images and on finished sightings, and how it plays.
+//! A robot's estimate of the ball in matches on images and on finished sightings, and its play.
 //!
 //! `cargo run --release -p monas-tests --bin images -- SECONDS SEED...`
 

@@ -33,8 +33,8 @@ impl Kicks {
         }
     }
 
-    /// Records that the motion of a request was refused, or that the robot fell in it. If the foot has
-    /// not hit the ball by then, there was no kick.
+    /// Records that the motion of a request was refused, or that the robot fell in it. If the foot
+    /// has not hit the ball by then, there was no kick.
     pub fn observe_failure(&mut self, number: u64) {
         if number == self.newest {
             self.under_way = None;

@@ -110,8 +110,8 @@ pub struct MotionArbiter {
     order: MotionCommand,
     /// Start time of the current skill.
     under_way: Option<Timestamp>,
-    /// The request whose skill is in progress or was, until the body stands again; and how the skill
-    /// ended.
+    /// The request whose skill is in progress or was, until the body stands again; and how the
+    /// skill ended.
     pending: Option<(u64, Option<SkillEnd>)>,
     done: u64,
     end: Option<SkillEnd>,
