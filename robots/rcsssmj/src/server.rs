@@ -2,7 +2,7 @@
 
 use std::fs::File;
 use std::net::TcpListener;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
@@ -20,10 +20,17 @@ const STARTING: Duration = Duration::from_secs(90);
 /// The pause between two attempts to connect.
 const RETRY: Duration = Duration::from_millis(5);
 
-/// A running server; it ends with this value.
+/// Waits until its input ends, which it does when the run has ended in any way; then ends the
+/// server and removes its folder.
+const WATCH: &str = r#"read _; kill -9 "$0"; rm -rf "$1""#;
+
+/// A running server; it ends with this value, or with the process of the run, even if that is
+/// killed.
 #[derive(Debug)]
 pub struct Server {
     process: Child,
+    /// Ends the server if the run cannot. There is none where there are no Unix shells.
+    watcher: Option<Child>,
     /// Where it writes its log.
     folder: PathBuf,
     agents: String,
@@ -55,7 +62,7 @@ impl Server {
         // An interrupt from the keyboard ends the run first, and the run its server.
         #[cfg(unix)]
         std::os::unix::process::CommandExt::process_group(&mut command, 0);
-        let process = command.spawn().map_err(|error| {
+        let mut process = command.spawn().map_err(|error| {
             let _ = std::fs::remove_dir_all(&folder);
             match error.kind() {
                 std::io::ErrorKind::NotFound => {
@@ -64,8 +71,14 @@ impl Server {
                 _ => Error::configuration(format!("`{program}` cannot be started: {error}")),
             }
         })?;
+        let watcher = watch(&process, &folder).map_err(|error| {
+            // The server ends with the failure.
+            let _ = process.kill().and_then(|()| process.wait());
+            let _ = std::fs::remove_dir_all(&folder);
+            failed(error)
+        })?;
         let address = |port| format!("127.0.0.1:{port}");
-        Ok(Server { process, folder, agents: address(agents), monitors: address(monitors) })
+        Ok(Server { process, watcher, folder, agents: address(agents), monitors: address(monitors) })
     }
 
     /// The address for agents.
@@ -114,11 +127,30 @@ impl Server {
 
 impl Drop for Server {
     fn drop(&mut self) {
-        // A process that has ended already is no error.
+        // A process that has ended already is no error. The watcher ends first: it has only the
+        // number of the server, which another process may have later.
+        if let Some(watcher) = &mut self.watcher {
+            let _ = watcher.kill();
+            let _ = watcher.wait();
+        }
         let _ = self.process.kill();
         let _ = self.process.wait();
         let _ = std::fs::remove_dir_all(&self.folder);
     }
+}
+
+/// Starts the watcher of a server. Its input is a pipe from this process, which the system closes
+/// with it.
+fn watch(server: &Child, folder: &Path) -> std::io::Result<Option<Child>> {
+    if !cfg!(unix) {
+        return Ok(None);
+    }
+    let mut watcher = Command::new("sh");
+    watcher.args(["-c", WATCH, &server.id().to_string()]).arg(folder).current_dir("/");
+    watcher.stdin(Stdio::piped()).stdout(Stdio::null()).stderr(Stdio::null());
+    #[cfg(unix)]
+    std::os::unix::process::CommandExt::process_group(&mut watcher, 0);
+    watcher.spawn().map(Some)
 }
 
 /// Two ports that are free at present.
@@ -149,5 +181,22 @@ mod tests {
         let mut server = Server::start(Some("false"), true).unwrap();
         let error = server.monitor().unwrap_err().to_string();
         assert!(error.starts_with("the server has ended, exit status: 1"), "{error}");
+    }
+    #[cfg(unix)]
+    #[test]
+    fn a_server_ends_when_the_process_of_its_run_is_gone() {
+        use std::os::unix::process::ExitStatusExt;
+
+        let folder = tempfile::tempdir().unwrap();
+        let of_server = folder.path().join("server");
+        std::fs::create_dir(&of_server).unwrap();
+        let mut server = Command::new("sleep").arg("600").spawn().unwrap();
+        let mut watcher = watch(&server, &of_server).unwrap().unwrap();
+        assert!(server.try_wait().unwrap().is_none() && watcher.try_wait().unwrap().is_none());
+        // The system closes the pipe of a process that is killed.
+        drop(watcher.stdin.take());
+        assert_eq!(server.wait().unwrap().signal(), Some(9));
+        watcher.wait().unwrap();
+        assert!(!of_server.exists());
     }
 }
