@@ -56,7 +56,7 @@ fn away_from_border(point: Vector) -> f64 {
 fn what_images_show_is_where_it_is() {
     let field = SharedField::new(world(3));
     let mut body = field.body(1).unwrap();
-    body.deliver_images().unwrap();
+    body.deliver_images(None).unwrap();
     let (mut percepts, mut interpreter) = (Percepts::default(), ImageInterpreter::default());
     let (mut shown, mut errors, mut false_balls, mut posts, mut images) = (0, Vec::new(), 0, Vec::new(), 0);
     let (mut lines, mut border) = (Vec::new(), Vec::new());
@@ -151,7 +151,7 @@ fn a_robot_that_sees_images_finds_and_moves_the_ball() {
                 if eyes == Eyes::Nao {
                     body = Box::new(SimulatedNao::new(body).unwrap());
                 }
-                body.deliver_images().unwrap();
+                body.deliver_images(None).unwrap();
                 return body;
             }
             Box::new(WrappedBody::new(body, blind, 1))
@@ -199,12 +199,13 @@ fn a_nao_delivers_the_images_of_the_field() {
     let settings = monas_robot::BodySettings {
         kind: "nao".into(),
         vision: monas_robot::CameraOutput::Images,
+        image_width: Some(160),
         ..Default::default()
     };
     let (field, of_field) = [(); 2].map(|()| SharedField::new(world(3))).into();
     let mut nao = settings.open(field.body(1).map(|body| Box::new(body) as _), 1).unwrap();
     let mut disk = of_field.body(1).unwrap();
-    disk.deliver_images().unwrap();
+    disk.deliver_images(Some(160)).unwrap();
     let images = |body: &mut dyn Robot, field: &SharedField| {
         let mut percepts = Percepts::default();
         let cycles = (0..100).map(|cycle| {

@@ -171,7 +171,7 @@ impl BodySettings {
     ///
     /// # Errors
     /// There is no such kind, it has no interface for other processes, the address cannot be used,
-    /// or the simulated body has no images to deliver.
+    /// or the simulated body has no images to deliver, or none of the width.
     pub fn serve(&self, mut simulated: Box<dyn Robot>, address: String) -> Result<Box<dyn Robot>, Error> {
         let kind = BodyKind::named(&self.kind)?;
         let serve = kind.serve.ok_or_else(|| {
@@ -182,7 +182,7 @@ impl BodySettings {
             Error::new(ErrorKind::Configuration, message)
         })?;
         if self.vision == CameraOutput::Images {
-            simulated.deliver_images()?;
+            simulated.deliver_images(self.image_width)?;
         }
         let options = self.options.clone();
         serve(BodySite { address: Some(address), options, simulated: Some(simulated) })
@@ -209,10 +209,7 @@ impl BodySettings {
         let (address, options) = (self.address.clone(), self.options.clone());
         let mut body = (kind.open)(BodySite { address, options, simulated })?;
         if self.vision == CameraOutput::Images {
-            body.deliver_images()?;
-            if let Some(width) = self.image_width {
-                body.set_image_width(width)?;
-            }
+            body.deliver_images(self.image_width)?;
         }
         Ok(match (&self.colours, self.disturbances == Disturbances::default()) {
             (None, true) => body,

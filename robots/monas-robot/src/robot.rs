@@ -80,23 +80,14 @@ pub trait Robot: Send {
         Err(Error::new(ErrorKind::Hardware, format!("the {model} has no LEDs to set")))
     }
 
-    /// Delivers images in place of sightings from now on, see [`Images`].
+    /// Delivers images in place of sightings from now on, see [`Images`]: of this width in pixels
+    /// and three quarters as high, or of the usual size of the body.
     ///
     /// # Errors
-    /// The body has no images to deliver (the default implementation).
-    fn deliver_images(&mut self) -> Result<(), Error> {
+    /// The body has no images to deliver (the default implementation), or none of this width.
+    fn deliver_images(&mut self, _width: Option<u32>) -> Result<(), Error> {
         let model = &self.anatomy().model;
         Err(Error::new(ErrorKind::Configuration, format!("the {model} delivers no images")))
-    }
-
-    /// Delivers images of this width from now on, pixels; their height is three quarters of it.
-    ///
-    /// # Errors
-    /// The images have one size (the default implementation), or none of this width.
-    fn set_image_width(&mut self, _width: u32) -> Result<(), Error> {
-        let model = &self.anatomy().model;
-        let message = format!("the images of the {model} have one size; remove `image_width`");
-        Err(Error::new(ErrorKind::Configuration, message))
     }
 
     /// Makes the body safe permanently: in any state it comes to rest, sits down, switches off the

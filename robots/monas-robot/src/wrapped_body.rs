@@ -164,12 +164,8 @@ impl Robot for WrappedBody {
         self.body.light(now, leds)
     }
 
-    fn deliver_images(&mut self) -> Result<(), Error> {
-        self.body.deliver_images()
-    }
-
-    fn set_image_width(&mut self, width: u32) -> Result<(), Error> {
-        self.body.set_image_width(width)
+    fn deliver_images(&mut self, width: Option<u32>) -> Result<(), Error> {
+        self.body.deliver_images(width)
     }
 
     /// Takes effect at once, and for good.
@@ -219,7 +215,7 @@ mod tests {
 
     #[test]
     fn a_body_without_images_says_so() {
-        let error = wrapped(Disturbances::default(), 7).deliver_images().unwrap_err();
+        let error = wrapped(Disturbances::default(), 7).deliver_images(None).unwrap_err();
         assert_eq!(
             (error.kind(), error.to_string()),
             (ErrorKind::Configuration, "the head delivers no images".into())

@@ -92,6 +92,21 @@ impl CameraPlaces {
     }
 }
 
+/// Checks the width of images that a configuration asks for.
+///
+/// # Errors
+/// The cameras have another one.
+pub(crate) fn check_width(width: Option<u32>) -> Result<(), Error> {
+    match width {
+        Some(width) if width as usize != WIDTH => {
+            let message =
+                format!("the images of a Nao are {WIDTH} pixels wide, not {width}; remove `image_width`");
+            Err(Error::new(monas_robot::ErrorKind::Configuration, message))
+        }
+        _ => Ok(()),
+    }
+}
+
 /// Opens a camera.
 fn open(path: &Path) -> Result<VideoDevice, CameraError> {
     VideoDevice::open(path).map_err(|error| CameraError { path: path.to_owned(), error })
@@ -308,6 +323,13 @@ mod tests {
         let looking_down = message(7, [Some(frame(1)), None], &angles);
         assert_eq!(looking_down.images.len(), 1);
         assert!(looking_down.images[0].camera_height < top.camera_height - 0.02);
+    }
+
+    #[test]
+    fn images_of_another_width_are_refused() {
+        assert!(check_width(None).is_ok() && check_width(Some(640)).is_ok());
+        let error = check_width(Some(320)).unwrap_err().to_string();
+        assert_eq!(error, "the images of a Nao are 640 pixels wide, not 320; remove `image_width`");
     }
 
     #[test]

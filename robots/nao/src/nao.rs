@@ -8,7 +8,7 @@ use std::time::Duration;
 use monas_robot::{Actuators, Anatomy, Error, ErrorKind, JointCommands, Leds, Percepts, Robot};
 use narukom::Timestamp;
 
-use crate::cameras::{CameraPlaces, Cameras};
+use crate::cameras::{self, CameraPlaces, Cameras};
 use crate::control::NaoControl;
 use crate::lola::SensorPacket;
 use crate::side_channels::RobotChannels;
@@ -207,8 +207,9 @@ impl Robot for Nao {
 
     /// Opens the cameras. A simulation that stands in for the robot delivers images if it has been
     /// asked to.
-    fn deliver_images(&mut self) -> Result<(), Error> {
+    fn deliver_images(&mut self, width: Option<u32>) -> Result<(), Error> {
         if self.channels.is_none() {
+            cameras::check_width(width)?;
             self.cameras = Some(Cameras::start(&self.camera_places)?);
         }
         Ok(())

@@ -78,9 +78,9 @@ impl LolaServer {
         self.percepts.sensors
     }
 
-    /// Has the body deliver images in place of sightings.
-    pub(crate) fn deliver_images(&mut self) -> Result<(), Error> {
-        self.body.deliver_images()
+    /// Has the body deliver images in place of sightings, of a width or of its usual one.
+    pub(crate) fn deliver_images(&mut self, width: Option<u32>) -> Result<(), Error> {
+        self.body.deliver_images(width)
     }
 
     /// Sends more of images that were sent in part. Returns whether there was a rest.

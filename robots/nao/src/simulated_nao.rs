@@ -66,8 +66,8 @@ impl Robot for SimulatedNao {
         Ok(())
     }
 
-    fn deliver_images(&mut self) -> Result<(), Error> {
-        self.server.deliver_images()
+    fn deliver_images(&mut self, width: Option<u32>) -> Result<(), Error> {
+        self.server.deliver_images(width)
     }
 
     fn act(&mut self, _now: Timestamp, actuators: &Actuators) -> Result<(), Error> {

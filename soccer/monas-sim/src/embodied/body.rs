@@ -159,22 +159,14 @@ impl Robot for FieldBody {
         self.drive()
     }
 
-    fn deliver_images(&mut self) -> Result<(), Error> {
-        self.cameras = Some(ImageCamera::default());
-        Ok(())
-    }
-
-    fn set_image_width(&mut self, width: u32) -> Result<(), Error> {
-        if !IMAGE_WIDTHS.iter().any(|(_, known)| *known == width) {
+    fn deliver_images(&mut self, width: Option<u32>) -> Result<(), Error> {
+        let is_known = |width: &u32| IMAGE_WIDTHS.iter().any(|(_, known)| known == width);
+        if let Some(width) = width.filter(|width| !is_known(width)) {
             let widths = IMAGE_WIDTHS.map(|(name, _)| name).join(", ");
             let message = format!("images have a width of {widths} pixels, not {width}");
             return Err(Error::new(ErrorKind::Configuration, message));
         }
-        let Some(cameras) = self.cameras.take() else {
-            let message = "the field robot delivers sightings, which have no width in pixels";
-            return Err(Error::new(ErrorKind::Configuration, message));
-        };
-        self.cameras = Some(cameras.with_width(width));
+        self.cameras = Some(ImageCamera::with_width(width));
         Ok(())
     }
 
@@ -330,8 +322,7 @@ mod tests {
                 SimulatedWorld::new(Setup { objects, ..Setup::three_against_three(1) }).unwrap(),
             );
             let mut body = pitch.body(0).unwrap();
-            body.deliver_images().unwrap();
-            width.map_or(Ok(()), |width| body.set_image_width(width)).unwrap();
+            body.deliver_images(width).unwrap();
             let images = first_percepts(&mut body, &pitch).images.unwrap();
             let width = width.unwrap_or(320);
             assert_eq!((images.images.len(), images.objects()), (2, objects));
@@ -346,10 +337,7 @@ mod tests {
     fn a_width_that_images_cannot_have_is_refused() {
         let pitch = pitch();
         let mut body = pitch.body(0).unwrap();
-        let error = body.set_image_width(640).unwrap_err().to_string();
-        assert!(error.contains("delivers sightings"), "{error}");
-        body.deliver_images().unwrap();
-        let error = body.set_image_width(641).unwrap_err().to_string();
+        let error = body.deliver_images(Some(641)).unwrap_err().to_string();
         assert!(error.contains("160, 320, 640 pixels, not 641"), "{error}");
     }
 

@@ -30,17 +30,11 @@ pub(super) struct ImageCamera {
     taken: u64,
 }
 
-impl Default for ImageCamera {
-    fn default() -> ImageCamera {
-        ImageCamera { renderer: Renderer::default(), width: 0, height: 0, taken: 0 }.with_width(WIDTH)
-    }
-}
-
 impl ImageCamera {
-    /// The camera with images of this width, pixels, three quarters as high.
-    pub(super) fn with_width(self, width: u32) -> ImageCamera {
-        let width = width as usize;
-        ImageCamera { width, height: width * 3 / 4, ..self }
+    /// A camera with images of this width, pixels, or of the usual one, and three quarters as high.
+    pub(super) fn with_width(width: Option<u32>) -> ImageCamera {
+        let width = width.unwrap_or(WIDTH) as usize;
+        ImageCamera { renderer: Renderer::default(), width, height: width * 3 / 4, taken: 0 }
     }
 
     /// The images of both cameras; none of a robot that does not stand on the field.
