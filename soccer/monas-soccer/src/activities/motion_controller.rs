@@ -130,11 +130,11 @@ monas::activity!(MotionController);
 
 #[cfg(test)]
 mod tests {
-    use monas_robot::{Posture as BodyPosture, Sensors, Skill};
+    use monas_robot::{Posture as BodyPosture, Sensors, Skill, SkillResult};
 
     use super::*;
     use crate::activities::activity_fixture::{ActivityFixture, TICK};
-    use crate::{GameState, HeadRequest, LedRequest, MotionKind, MotionRequest};
+    use crate::{GameState, HeadRequest, LedRequest, MotionKind, MotionRequest, MotionResult};
 
     fn playing() -> GameState {
         GameState { player_state: PlayerState::Playing.into(), ..GameState::default() }
@@ -203,6 +203,28 @@ mod tests {
         let state = stage.latest(topics::MOTION_STATE).unwrap();
         assert_eq!((state.phase(), state.done), (MotionPhase::Standing, 4));
         assert_eq!(stage.latest(body::ACTUATORS).unwrap().skill_number, 10);
+    }
+
+    #[test]
+    fn how_a_motion_ended_is_reported() {
+        for (result, expected) in [
+            (SkillResult::Performed, MotionResult::Performed),
+            (SkillResult::Refused, MotionResult::Refused),
+            (SkillResult::Interrupted, MotionResult::Interrupted),
+        ] {
+            let (mut stage, mut activity) = (ActivityFixture::new(), MotionController::default());
+            let kind = MotionKind::KickLeft.into();
+            stage
+                .publish(topics::GAME_STATE, playing())
+                .publish(body::SENSORS, felt(BodyPosture::Standing, 0));
+            stage.publish(topics::MOTION, MotionRequest { kind, number: 1, ..MotionRequest::default() });
+            stage.run(&mut activity);
+            assert_eq!(stage.latest(topics::MOTION_STATE).unwrap().result(), MotionResult::NoResult);
+            let ended = Sensors { skill_result: result.into(), ..felt(BodyPosture::Standing, 1) };
+            stage.publish(body::SENSORS, ended).wait(TICK).run(&mut activity);
+            let state = stage.latest(topics::MOTION_STATE).unwrap();
+            assert_eq!((state.done, state.result()), (1, expected));
+        }
     }
 
     #[test]

@@ -169,7 +169,7 @@ mod tests {
 
     use super::*;
     use crate::activities::activity_fixture::{ActivityFixture, TICK};
-    use crate::{Ball, GameState, MotionRequest, Pose};
+    use crate::{Ball, GameState, MotionRequest, MotionState, Pose};
 
     fn player() -> (ActivityFixture, TeamRadio) {
         let mut stage = ActivityFixture::new();
@@ -259,6 +259,29 @@ mod tests {
             stage.wait(8 * TICK);
             stage.run(&mut radio);
             assert_eq!(since(last_report(&mut stage)), expected, "and it is said at once");
+        }
+    }
+
+    #[test]
+    fn a_kick_that_is_refused_or_in_which_the_robot_falls_is_no_pass() {
+        let state = |phase: MotionPhase, result: MotionResult, done| MotionState {
+            phase: phase.into(),
+            result: result.into(),
+            done,
+        };
+        for (ends, is_said) in [
+            (state(MotionPhase::Standing, MotionResult::Refused, 1), false),
+            (state(MotionPhase::Fallen, MotionResult::NoResult, 0), false),
+            (state(MotionPhase::Standing, MotionResult::Performed, 1), true),
+        ] {
+            let (mut stage, mut radio) = player();
+            let kick = MotionRequest { number: 1, is_pass: true, ..MotionRequest::default() };
+            stage.publish(topics::MOTION, MotionRequest { kind: MotionKind::KickLeft.into(), ..kick });
+            stage.run(&mut radio);
+            stage.publish(topics::MOTION_STATE, ends).wait(2 * TICK).run(&mut radio);
+            stage.wait(7 * TICK).run(&mut radio);
+            let report = stage.latest(topics::TEAM).unwrap().own.unwrap();
+            assert_eq!(report.since_pass < NEVER, is_said, "{ends:?}");
         }
     }
 
