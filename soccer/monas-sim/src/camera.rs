@@ -35,6 +35,13 @@ pub enum Sighting {
         /// Its apparent position.
         percept: Percept,
     },
+    /// A place of the lines. Its distance is computed from its elevation.
+    Line {
+        /// What it is.
+        feature: LineFeature,
+        /// Its apparent position.
+        percept: Percept,
+    },
     /// Another robot.
     Robot {
         /// The colour of its team.
@@ -42,6 +49,17 @@ pub enum Sighting {
         /// Its apparent position.
         percept: Percept,
     },
+}
+
+/// A place of the lines that a picture shows as such.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum LineFeature {
+    /// The corner of two lines: of the field or of a goal area.
+    Corner,
+    /// A place where a line ends at another: at the halfway line or at a goal area.
+    Junction,
+    /// The middle of the centre circle.
+    CentreCircle,
 }
 
 /// The state of the world and a robot at the time of a picture.
@@ -74,6 +92,7 @@ impl CameraView<'_> {
             self.look_for_goal(side, stream, sightings);
         }
         self.look_for_robots(stream, sightings);
+        self.look_for_lines(stream, sightings);
     }
 
     fn look_for_ball(&self, stream: &mut RandomStream, sightings: &mut Vec<Sighting>) {
@@ -112,6 +131,16 @@ impl CameraView<'_> {
             if self.sees(&target, Some(index), stream) {
                 let percept = self.percept(&target, stream);
                 sightings.push(Sighting::Robot { colour: self.colours[robot.team], percept });
+            }
+        }
+    }
+
+    fn look_for_lines(&self, stream: &mut RandomStream, sightings: &mut Vec<Sighting>) {
+        for (feature, place) in self.scene.field.line_features() {
+            let target = self.target(place, (0.0, 0.0), self.physics().line_range);
+            if self.sees(&target, None, stream) {
+                let percept = self.percept_by_elevation(&target, 0.0, stream);
+                sightings.push(Sighting::Line { feature, percept });
             }
         }
     }
