@@ -18,6 +18,7 @@ pub use player::BehaviorPlayer;
 struct StartUp {
     has_stood_up: bool,
     used_ball: Option<(PublisherId, u64)>,
+    kick_off: WalkToKickOff,
 }
 
 impl StartUp {
@@ -34,7 +35,7 @@ impl StartUp {
         }
         let state = blackboard.read(topics::GAME_STATE).map(|game| game.player_state());
         if state == Some(PlayerState::Ready) {
-            _ = WalkToKickOff.execute(blackboard)?;
+            _ = self.kick_off.execute(blackboard)?;
         }
         if state != Some(PlayerState::Playing) {
             return Ok(false);

@@ -13,7 +13,7 @@ use monas_robot::{Actuators, Anatomy, Announcement, Error, Percepts, Robot, Sens
 use monas_soccer::functionality::field::FieldModel;
 use monas_soccer::functionality::game::{GameTracker, PlayerState};
 use monas_soccer::functionality::head::{Gaze, HeadController};
-use monas_soccer::functionality::kick_off::{UNSURE, look_around, walk_to_kick_off};
+use monas_soccer::functionality::kick_off::KickOffWalk;
 use monas_soccer::functionality::lights;
 use monas_soccer::functionality::motion::{DesiredMotion, MotionArbiter, PendingRequest, Posture};
 use monas_soccer::functionality::placement::PlacementTracker;
@@ -52,6 +52,7 @@ pub struct SharedMemory {
     pub(crate) ball: Ball,
     pub(crate) pose: Option<Pose>,
     pub(crate) robots: Robots,
+    kick_off: KickOffWalk,
     pub(crate) gaze: GazeRequest,
     pub(crate) motion: DesiredMotion,
     /// The number of the last skill that was requested, and of the last that is over.
@@ -96,10 +97,8 @@ impl SharedMemory {
         self.gaze = GazeRequest::Scan;
         let place = self.game.place();
         let robots: Vec<Point2<f64>> = self.robots.robots.iter().map(|robot| robot.position()).collect();
-        let walk = match self.pose.filter(|pose| pose.confidence > UNSURE) {
-            Some(pose) => walk_to_kick_off(&pose.field_from_robot(), &place, &robots),
-            None => look_around(),
-        };
+        let pose = self.pose.map(|pose| (pose.field_from_robot(), pose.confidence));
+        let walk = self.kick_off.walk(self.now, pose, &place, &robots);
         self.request(DesiredMotion::Walk(walk));
     }
 }
@@ -138,6 +137,7 @@ impl<B: Behaviour> DirectRobot<B> {
             ball: Ball::default(),
             pose: None,
             robots: Robots::default(),
+            kick_off: KickOffWalk::default(),
             gaze: GazeRequest::Ahead,
             motion: DesiredMotion::Stand,
             motion_number: 0,

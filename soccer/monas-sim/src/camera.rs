@@ -377,7 +377,7 @@ mod tests {
         };
         assert!(post(Side::Left) && post(Side::Right), "{sightings:?}");
         assert!(sightings.iter().any(|s| matches!(s, Sighting::Robot { colour: TeamColour::Red, .. })));
-        assert_eq!(sightings.len(), 3);
+        assert_eq!(without_lines(&sightings).len(), 3);
     }
 
     #[test]
@@ -385,7 +385,33 @@ mod tests {
         let mut stage = stage(Vector::new(-1.0, 0.0));
         stage.robots[0].pose = Pose::new(2.0, 0.0, 0.6);
         let sightings = stage.look(&mut RandomStream::new(1, "camera"));
-        assert!(matches!(sightings[..], [Sighting::Post { side: None, .. }]), "{sightings:?}");
+        let seen = without_lines(&sightings);
+        assert!(matches!(seen[..], [Sighting::Post { side: None, .. }]), "{sightings:?}");
+    }
+
+    fn without_lines(sightings: &[Sighting]) -> Vec<Sighting> {
+        sightings.iter().filter(|seen| !matches!(seen, Sighting::Line { .. })).copied().collect()
+    }
+
+    #[test]
+    fn corners_and_junctions_of_lines_are_seen_where_they_are() {
+        let mut stage = stage(Vector::new(-1.0, 0.0));
+        stage.robots[0].pose = Pose::new(1.5, 1.1, 0.0);
+        let sightings = stage.look(&mut RandomStream::new(1, "camera"));
+        let seen = |wanted: LineFeature, place: Vector| {
+            let place = stage.robots[0].pose.to_own(place);
+            sightings.iter().any(|seen| match seen {
+                Sighting::Line { feature, percept } => {
+                    *feature == wanted
+                        && (percept.bearing - direction_of(place)).abs() < 0.05
+                        && (percept.distance - place.norm()).abs() < 0.3
+                }
+                _ => false,
+            })
+        };
+        assert!(seen(LineFeature::Corner, Vector::new(2.4, 1.1)), "{sightings:?}");
+        assert!(seen(LineFeature::Junction, Vector::new(3.0, 1.1)), "{sightings:?}");
+        assert!(!seen(LineFeature::Corner, Vector::new(2.4, -1.1)), "it is out of view");
     }
 
     #[test]

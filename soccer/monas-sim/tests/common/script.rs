@@ -1,13 +1,16 @@
 //! A scripted team that knows the ground truth: a reference for the physics, far simpler than real
 //! players.
 
-use monas_sim::{BodyPhase, Command, Motion, RobotState, Side, SimulatedWorld, Vector};
+use monas_sim::{BodyPhase, Command, GameState, Motion, RobotState, Side, SimulatedWorld, Vector};
 
 /// The current command to a robot of a scripted team.
 pub(crate) fn command(world: &SimulatedWorld, robot: usize) -> Command {
     let me = world.robots()[robot];
     if me.phase.is_fallen() {
         return Command::new(Motion::StandUp);
+    }
+    if world.referee().state() != GameState::Playing {
+        return Command::new(Motion::Stand);
     }
     let goal = world.field().goal(world.referee().defends()[me.team].opposite());
     if me.is_goalie() {

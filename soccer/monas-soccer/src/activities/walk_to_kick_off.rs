@@ -5,26 +5,24 @@ use nalgebra::Point2;
 
 use super::motion_requests::{request_scan, request_walk};
 use super::shot::others;
-use crate::functionality::kick_off::{UNSURE, look_around, walk_to_kick_off};
+use crate::functionality::kick_off::KickOffWalk;
 use crate::topics;
 
 /// Walks to the player's place for a kick-off and stands there, while the head looks for landmarks.
-/// Turns on the spot while the pose is unknown.
+/// Turns once around first if the pose is unknown.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct WalkToKickOff;
+pub struct WalkToKickOff {
+    walk: KickOffWalk,
+}
 
 impl Activity for WalkToKickOff {
     fn execute(&mut self, blackboard: &mut Blackboard) -> Result<Progress, BoxError> {
         request_scan(blackboard)?;
         let Some(game) = blackboard.read(topics::GAME_STATE) else { return Ok(Progress::Done) };
         let place = game.place();
-        let walk = match blackboard.read(topics::POSE).filter(|pose| pose.confidence > UNSURE) {
-            Some(pose) => {
-                let robots: Vec<Point2<f64>> = others(blackboard).map(|robot| robot.position()).collect();
-                walk_to_kick_off(&pose.field_from_robot(), &place, &robots)
-            }
-            None => look_around(),
-        };
+        let pose = blackboard.read(topics::POSE).map(|pose| (pose.field_from_robot(), pose.confidence));
+        let robots: Vec<Point2<f64>> = others(blackboard).map(|robot| robot.position()).collect();
+        let walk = self.walk.walk(blackboard.now(), pose, &place, &robots);
         request_walk(blackboard, walk)?;
         Ok(Progress::Done)
     }
@@ -52,12 +50,12 @@ mod tests {
         let mut stage = ActivityFixture::new();
         let pose = Pose { x: 2.0, heading: std::f64::consts::PI, confidence: 0.9, ..Pose::default() };
         stage.publish(topics::GAME_STATE, game()).publish(topics::POSE, pose);
-        assert!(stage.run(&mut WalkToKickOff));
+        assert!(stage.run(&mut WalkToKickOff::default()));
         let walk = stage.latest(topics::MOTION).unwrap();
         assert!(walk.vx > 0.2, "{walk:?}");
         assert_eq!(stage.latest(topics::HEAD).unwrap().mode(), HeadMode::Scan);
         stage.publish(topics::POSE, Pose { x: -1.05, y: 0.9, heading: -0.7, confidence: 0.9 });
-        assert!(stage.run(&mut WalkToKickOff));
+        assert!(stage.run(&mut WalkToKickOff::default()));
         let walk = stage.latest(topics::MOTION).unwrap();
         assert_eq!((walk.vx, walk.vy, walk.wz), (0.0, 0.0, 0.0));
     }
@@ -67,7 +65,7 @@ mod tests {
         let mut stage = ActivityFixture::new();
         stage.publish(topics::GAME_STATE, game());
         stage.publish(topics::POSE, Pose { confidence: 0.1, ..Pose::default() });
-        assert!(stage.run(&mut WalkToKickOff));
+        assert!(stage.run(&mut WalkToKickOff::default()));
         let walk = stage.latest(topics::MOTION).unwrap();
         assert!(walk.vx == 0.0 && walk.wz.abs() > 0.3, "{walk:?}");
     }

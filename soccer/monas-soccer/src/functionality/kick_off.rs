@@ -1,6 +1,9 @@
 //! Places of a team for a kick-off, and the walk to them.
 
+use std::time::Duration;
+
 use nalgebra::{Isometry2, Point2};
+use narukom::Timestamp;
 
 use super::avoidance::avoid;
 use super::field::{FieldModel, Goal};
@@ -21,7 +24,12 @@ const PLACES: [(f64, f64); 5] = [(0.35, 0.45), (0.35, -0.45), (0.6, 0.0), (0.55,
 /// Errors of place, metres, and heading, radians, below which a robot stands.
 const CONTENT: (f64, f64) = (0.12, 0.2);
 /// Confidence of the pose below which a robot looks around before it walks.
-pub const UNSURE: f64 = 0.2;
+const UNSURE: f64 = 0.2;
+/// The turn with which it looks around, rad/s, and how long: a whole turn.
+const LOOK_AROUND: f64 = 0.6;
+const LOOK_TIME: Duration = Duration::from_millis(10_500);
+/// Time without a call after which a walk is another one.
+const PAUSE: Duration = Duration::from_secs(1);
 /// Distance below which a robot turns to its final heading while it walks, metres.
 const ARRIVAL: f64 = 0.4;
 
@@ -44,14 +52,39 @@ pub fn kick_off_place(field: &FieldModel, number: u32, kicks_off: bool) -> Isome
     pose(place.x, place.y, angle_of(&-place.coords))
 }
 
-/// The turn with which a robot that does not know its pose finds landmarks.
-pub fn look_around() -> Walk {
-    Walk::turning(0.6)
+/// A walk to the place for a kick-off. A robot that does not know its pose turns once around to find
+/// landmarks, and stands if it has found none.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct KickOffWalk {
+    called_at: Timestamp,
+    began_at: Timestamp,
 }
 
-/// The walk to a place for a kick-off, past the ball at the centre and other robots, given in the
-/// robot's frame.
-pub fn walk_to_kick_off(
+impl KickOffWalk {
+    /// The walk at a time: from a pose, of which the confidence is known, to a place, past the ball
+    /// at the centre and other robots, given in the robot's frame.
+    pub fn walk(
+        &mut self,
+        now: Timestamp,
+        pose: Option<(Isometry2<f64>, f64)>,
+        field_from_place: &Isometry2<f64>,
+        robots: &[Point2<f64>],
+    ) -> Walk {
+        if now.since(self.called_at) > PAUSE {
+            self.began_at = now;
+        }
+        self.called_at = now;
+        match pose {
+            Some((field_from_robot, confidence)) if confidence > UNSURE => {
+                walk_to_kick_off(&field_from_robot, field_from_place, robots)
+            }
+            _ if now.since(self.began_at) < LOOK_TIME => Walk::turning(LOOK_AROUND),
+            _ => Walk::STILL,
+        }
+    }
+}
+
+fn walk_to_kick_off(
     field_from_robot: &Isometry2<f64>,
     field_from_place: &Isometry2<f64>,
     robots: &[Point2<f64>],
@@ -92,6 +125,19 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn a_robot_that_finds_no_landmark_turns_once_around_and_stands() {
+        let mut walk = KickOffWalk::default();
+        let mut turned = 0.0;
+        for cycle in 0..150 {
+            let now = Timestamp::from_nanos(5_000_000_000 + cycle * 100_000_000);
+            turned += 0.1 * walk.walk(now, Some((pose(0.0, 0.0, 0.0), 0.1)), &pose(-1.0, 0.0, 0.0), &[]).turn;
+        }
+        assert!((6.2..6.5).contains(&turned), "{turned}");
+        let next = Timestamp::from_nanos(60_000_000_000);
+        assert!(walk.walk(next, None, &pose(-1.0, 0.0, 0.0), &[]).turn > 0.0, "before the next kick-off");
     }
 
     #[test]
