@@ -22,8 +22,8 @@ struct StartUp {
 }
 
 impl StartUp {
-    /// Whether the behaviour decides now: the robot has stood up, it plays, and the ball is news. In
-    /// READY the robot walks to its place.
+    /// Whether the behaviour decides now: the robot has stood up, it plays, and the ball is news.
+    /// In READY the robot walks to its place.
     fn is_ready(&mut self, blackboard: &mut Blackboard) -> Result<bool, BoxError> {
         if !self.has_stood_up {
             let phase = blackboard.read(topics::MOTION_STATE).map(|state| state.phase());

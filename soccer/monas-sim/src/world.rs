@@ -435,8 +435,7 @@ impl SimulatedWorld {
         }
     }
 
-    /// Places the ball, and the robots that have to be placed, given the pose and the legal place of
-    /// each.
+    /// Places the ball at the centre, and the robots that have to be placed.
     fn place_for_kick_off(&mut self, must_be_placed: impl Fn(&Self, usize) -> bool) {
         self.set_ball(Vector::zeros(), Vector::zeros());
         let mut ranks = [0; 2];

@@ -52,8 +52,8 @@ pub fn kick_off_place(field: &FieldModel, number: u32, kicks_off: bool) -> Isome
     pose(place.x, place.y, angle_of(&-place.coords))
 }
 
-/// A walk to the place for a kick-off. A robot that does not know its pose turns once around to find
-/// landmarks, and stands if it has found none.
+/// A walk to the place for a kick-off. A robot that does not know its pose turns once around to
+/// find landmarks, and stands if it has found none.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct KickOffWalk {
     called_at: Timestamp,

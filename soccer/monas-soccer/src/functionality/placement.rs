@@ -1,7 +1,7 @@
 //! Placements of the robot by a person: that it was put down, and where that can be.
 //!
-//! The robot feels that it is lifted; nobody gives it the pose at which it stands afterwards. The
-//! rules leave few places: the own half, before a half and for a kick-off, and the ends of the
+//! The robot feels that it is lifted, and gets no pose at which it stands afterwards. The rules
+//! leave few places: the own half, before a half and for a kick-off, and the ends of the
 //! halfway line after a penalty.
 
 use std::f64::consts::FRAC_PI_2;
