@@ -19,7 +19,7 @@ const WATCHED: f64 = 30.0;
 const BETWEEN: f64 = 5.0;
 
 /// Differences between estimated and true poses while the game is played.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, PartialEq, Debug, Default)]
 pub struct PoseErrors {
     /// Of the place, metres.
     pub places: Vec<f64>,
@@ -28,7 +28,7 @@ pub struct PoseErrors {
 }
 
 /// Robots that were carried away during play without a sign.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, PartialEq, Debug, Default)]
 pub struct Kidnappings {
     /// The seconds after which each knew where it was.
     pub recoveries: Vec<f64>,

@@ -105,9 +105,11 @@ impl Localisation {
     }
 
     /// Confidence of the position: 1 if exact, 0.5 at a standard deviation of half a metre, near 0
-    /// if unknown; less while other hypotheses have weight.
+    /// if unknown; less while other hypotheses have weight, and while landmarks do not match.
     pub fn confidence(&self) -> f64 {
-        self.hypotheses.first().map_or(0.0, |best| best.weight / (1.0 + best.filter.place_variance() / 0.25))
+        self.hypotheses.first().map_or(0.0, |best| {
+            best.weight * best.filter.trust() / (1.0 + best.filter.place_variance() / 0.25)
+        })
     }
 
     fn normalise(&mut self) {
@@ -309,6 +311,19 @@ mod tests {
         assert_eq!(filter.field_from_robot(), truth);
         filter.correct(&FIELD, &[post(&pose(1.2, 0.0, 0.0), Goal::Opponent, GoalPost::Left)]);
         assert!(filter.field_from_robot().translation.x > 1.0, "one that fits does");
+    }
+
+    #[test]
+    fn it_is_less_confident_while_landmarks_do_not_match() {
+        let truth = pose(1.0, 0.0, 0.0);
+        let mut filter = localisation(&[at(1.0, 0.0, 0.0, 0.05)]);
+        let seen = post(&truth, Goal::Opponent, GoalPost::Left);
+        filter.correct(&FIELD, &[seen]);
+        let before = filter.confidence();
+        filter.correct(&FIELD, &[LandmarkSighting { distance: 0.5, ..seen }]);
+        assert!(filter.confidence() < 0.9 * before, "{} {before}", filter.confidence());
+        filter.correct(&FIELD, &[seen]);
+        assert!(filter.confidence() > 0.97 * before, "{} {before}", filter.confidence());
     }
 
     #[test]

@@ -105,6 +105,12 @@ impl PoseFilter {
         &self.field_from_robot
     }
 
+    /// Part of the sightings that match, of the last ones, from 1 to 0: less the nearer the filter
+    /// is to doubting its pose.
+    pub(super) fn trust(&self) -> f64 {
+        1.0 - f64::from(self.misfits) / f64::from(DOUBT)
+    }
+
     /// The variance of the position, square metres.
     pub(super) fn place_variance(&self) -> f64 {
         (self.covariance[(0, 0)] + self.covariance[(1, 1)]).max(0.0)
