@@ -12,7 +12,7 @@ pub(crate) mod constants {
     /// `tolerance`
     pub(crate) const tolerance: f64 = 0.025;
     /// `nearer`
-    pub(crate) const nearer: f64 = 0.3;
+    pub(crate) const nearer: f64 = 0.1;
     /// `look`
     pub(crate) const look: f64 = 2.5;
     /// `wander`

@@ -15,7 +15,7 @@ use crate::functionality::geometry::angle_of;
 use crate::functionality::guard::GoalPositioning;
 use crate::functionality::head::HeadController;
 use crate::functionality::walk::Walk;
-use crate::{AttackPart, Ball, topics};
+use crate::{Ball, topics};
 
 /// Polling interval; the activity is also called as soon as the ball is seen.
 pub(super) const LOOK: Duration = Duration::from_millis(100);
@@ -27,8 +27,6 @@ pub(super) const LOST: f64 = 2.5;
 const NEAR: f64 = 0.25;
 /// Accepted final error of the heading to the target, radians.
 const FACING: f64 = 0.2;
-/// How long a pass may not be worth it before it is given up: sightings of opponents come and go.
-const DOUBT: Duration = Duration::from_millis(600);
 
 /// Walks to the ball and round it, looking at it, until it lies in front of a foot and the robot
 /// faces a target.
@@ -38,27 +36,18 @@ struct BringBall {
     alignment: Alignment,
     head: HeadController,
     since: Option<Timestamp>,
-    /// When it was last worth it.
-    wanted: Option<Timestamp>,
 }
 
 impl BringBall {
-    /// Continues; done when the ball is in position, when it is not worth it any more, or when this
-    /// has failed. A later kick checks its own conditions.
+    /// Continues; done when the ball is in position or when this has failed. A later kick checks
+    /// its own conditions.
     fn advance(
         &mut self,
         blackboard: &mut Blackboard,
-        is_wanted: impl Fn(&Blackboard) -> bool,
         target: impl Fn(&Blackboard, &Ball, Option<&RobotAndField>) -> Point2<f64>,
     ) -> Result<Progress, BoxError> {
         let now = blackboard.now();
         let late = now.since(*self.since.get_or_insert(now)) > PATIENCE;
-        let wanted = *self.wanted.get_or_insert(now);
-        if is_wanted(blackboard) {
-            self.wanted = Some(now);
-        } else if now.since(wanted) > DOUBT {
-            return Ok(Progress::Done);
-        }
         let Some(ball) = blackboard.read(topics::BALL).copied().filter(|ball| ball.age < LOST) else {
             return Ok(Progress::Done);
         };
@@ -108,13 +97,8 @@ fn mate(blackboard: &Blackboard, ball: &Ball, ground: Option<&RobotAndField>) ->
     }
 }
 
-/// Whether the player still has the part that passes.
-fn is_center(blackboard: &Blackboard) -> bool {
-    blackboard.read(topics::ATTACK).is_some_and(|attack| attack.part() == AttackPart::Center)
-}
-
 macro_rules! bring_ball {
-    ($($(#[$documentation:meta])* $name:ident: $target:path, $is_wanted:expr, [$($topic:ident),*];)*) => {$(
+    ($($(#[$documentation:meta])* $name:ident: $target:path, [$($topic:ident),*];)*) => {$(
         $(#[$documentation])*
         #[derive(Clone, Copy, Debug, Default)]
         pub struct $name {
@@ -123,15 +107,15 @@ macro_rules! bring_ball {
 
         impl Activity for $name {
             fn execute(&mut self, blackboard: &mut Blackboard) -> Result<Progress, BoxError> {
-                let progress = self.bring.advance(blackboard, $is_wanted, $target)?;
+                let progress = self.bring.advance(blackboard, $target)?;
                 if progress == Progress::Done {
-                    (self.bring.since, self.bring.wanted) = (None, None);
+                    self.bring.since = None;
                 }
                 Ok(progress)
             }
 
             fn stop(&mut self, _: &mut Blackboard) {
-                (self.bring.since, self.bring.wanted) = (None, None);
+                self.bring.since = None;
             }
 
             fn topics(&self) -> Topics {
@@ -147,12 +131,11 @@ macro_rules! bring_ball {
 
 bring_ball! {
     /// Walks to the ball and lines up for a pass to the partner in the attack. Ends when the ball
-    /// lies in front of a foot or in the own goal area, is lost, when a pass is not worth it any
-    /// more, or after 25 s; it never kicks.
-    BringBallToPass: mate, is_center, [ATTACK];
+    /// lies in front of a foot or in the own goal area, is lost, or after 25 s; it never kicks.
+    BringBallToPass: mate, [ATTACK];
     /// Walks to the ball and lines up for a shot at the widest gap in the goal. Ends when the ball
     /// lies in front of a foot or in the own goal area, is lost, or after 25 s; it never kicks.
-    BringBallToShoot: target, |_| true, [];
+    BringBallToShoot: target, [];
 }
 
 #[cfg(test)]
@@ -188,22 +171,11 @@ mod tests {
     fn for_a_pass_it_has_to_face_the_mate() {
         let mut activity = BringBallToPass::default();
         let mut stage = stage((0.15, 0.05));
-        let attack = Attack { part: AttackPart::Center.into(), ..Attack::default() };
-        stage.publish(topics::ATTACK, Attack { mate_x: 1.0, mate_y: 1.5, ..attack });
+        stage.publish(topics::ATTACK, Attack { mate_x: 1.0, mate_y: 1.5, ..Attack::default() });
         assert!(!stage.run(&mut activity));
         assert!(stage.latest(topics::MOTION).unwrap().wz > 0.3, "it turns to where the mate is");
-        stage.publish(topics::ATTACK, Attack { mate_x: 1.5, mate_y: 0.1, ..attack });
+        stage.publish(topics::ATTACK, Attack { mate_x: 1.5, mate_y: 0.1, ..Attack::default() });
         assert!(stage.run(&mut activity));
-    }
-
-    #[test]
-    fn a_pass_that_is_not_worth_it_any_more_is_given_up() {
-        let mut activity = BringBallToPass::default();
-        let mut stage = stage((1.0, 0.0));
-        stage.publish(topics::ATTACK, Attack::default());
-        assert!(!stage.run(&mut activity));
-        assert!(!stage.wait(DOUBT).run(&mut activity), "it may be a sighting");
-        assert!(stage.wait(LOOK).run(&mut activity));
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use monas::{Activity, Blackboard, BoxError, Parameters, Progress, Topics};
+use monas::{Activity, Blackboard, BoxError, Progress, Topics};
 use nalgebra::Point2;
 use narukom::Timestamp;
 
@@ -11,34 +11,21 @@ use super::motion_requests::{request_gaze, request_walk};
 use super::shot::{ground, others};
 use super::support_mate::walk_to;
 use crate::functionality::head::HeadController;
-use crate::functionality::support::{AHEAD_FOR_PASS, support_place};
+use crate::functionality::support::{AHEAD, support_place};
 use crate::{AttackPart, topics};
 
 /// Walks towards the opponents' goal to a position for receiving a pass, and waits there facing the
 /// ball until it is passed, until the attack is over for this player, or for 30 s.
-///
-/// Parameter `ahead` (m): how far before the ball that position is.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct WalkTowardsGoal {
-    ahead: f64,
     head: HeadController,
     since: Option<Timestamp>,
-}
-
-impl Default for WalkTowardsGoal {
-    fn default() -> WalkTowardsGoal {
-        WalkTowardsGoal { ahead: AHEAD_FOR_PASS, head: HeadController::default(), since: None }
-    }
 }
 
 /// How long a pass is awaited.
 const PATIENCE: Duration = Duration::from_secs(30);
 
 impl Activity for WalkTowardsGoal {
-    fn configure(&mut self, parameters: &Parameters) {
-        self.ahead = parameters.number("ahead").unwrap_or(self.ahead);
-    }
-
     fn execute(&mut self, blackboard: &mut Blackboard) -> Result<Progress, BoxError> {
         let now = blackboard.now();
         let late = now.since(*self.since.get_or_insert(now)) > PATIENCE;
@@ -52,7 +39,7 @@ impl Activity for WalkTowardsGoal {
             return Ok(Progress::after(LOOK));
         };
         let here = Point2::from(ground.field_from_robot.translation.vector);
-        let place = support_place(&ground.field, ground.field_from_robot * ball.position(), here, self.ahead);
+        let place = support_place(&ground.field, ground.field_from_robot * ball.position(), here, AHEAD);
         let obstacles: Vec<Point2<f64>> = others(blackboard).map(|robot| robot.position()).collect();
         let walk = walk_to(ground.field_from_robot.inverse_transform_point(&place), &ball, &obstacles);
         request_gaze(blackboard, self.head.look_at(ball.position()))?;

@@ -6,8 +6,6 @@ use super::field::{FieldModel, Goal};
 
 /// Distance ahead of the ball of a supporter, metres.
 pub const AHEAD: f64 = 1.0;
-/// Distance ahead of the ball of the receiver of a pass, metres.
-pub const AHEAD_FOR_PASS: f64 = 2.0;
 const ASIDE: f64 = 0.85;
 /// Distance kept from the opponents' goal line, metres.
 const FROM_GOAL_LINE: f64 = 0.8;
