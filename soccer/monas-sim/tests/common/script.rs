@@ -101,7 +101,7 @@ fn angle(angle: f64) -> f64 {
 
 /// Lets both teams (or only the first) play by the script until the match is over.
 pub(crate) fn play_match(world: &mut SimulatedWorld, teams: &[usize]) {
-    while world.referee().state() != monas_sim::GameState::Finished {
+    while world.referee().state() != GameState::Finished {
         for robot in 0..world.robots().len() {
             if world.steps().is_multiple_of(2) && teams.contains(&world.robots()[robot].team) {
                 let command = command(world, robot);
