@@ -13,6 +13,7 @@
 
 mod ball_knowledge;
 pub mod dice;
+mod localisation;
 #[cfg(doctest)]
 mod readmes;
 mod row;
@@ -20,6 +21,7 @@ mod season;
 mod team_play;
 
 pub use ball_knowledge::{BallKnowledge, TODAY};
+pub use localisation::{Kidnappings, PoseErrors, kidnap, pose_errors, quantile};
 pub use row::{MatchRow, play};
 pub use season::{SEASON_LENGTH, SEASON_SEEDS, SHORT_LENGTH, SHORT_SEEDS, SeasonTable, season, short_rows};
 pub use team_play::{PassCounts, StateTime, TeamPlay, TeamPlayObserver};

@@ -8,7 +8,8 @@ use std::time::Duration;
 
 use crate::{
     ATTACK, ATTACK_LOSS20, ATTACK_LOSS50, ATTACK_RED, ATTACK_RED_LOSS20, ATTACK_RED_LOSS50, ATTACK_STANDING,
-    DICE, MATCH, MatchRow, NO_GOALIE, PassCounts, STANDING, VARIANTS, Variant, play,
+    DICE, Kidnappings, MATCH, MatchRow, NO_GOALIE, PassCounts, PoseErrors, STANDING, VARIANTS, Variant,
+    kidnap, play, pose_errors, quantile,
 };
 
 /// The length of a match of the season.
@@ -20,18 +21,42 @@ pub const SHORT_LENGTH: Duration = Duration::from_secs(120);
 /// The seeds of the short matches.
 pub const SHORT_SEEDS: RangeInclusive<u64> = 1..=2;
 
-/// The rows of a season.
+/// The seeds of the matches whose poses are compared with the truth.
+const POSE_SEEDS: RangeInclusive<u64> = 1..=4;
+/// The time that counts for a robot that did not find itself, seconds.
+const NOT_FOUND: f64 = 30.0;
+
+/// The rows of a season, and how well its robots know where they are.
 #[derive(Clone, PartialEq, Debug)]
 pub struct SeasonTable {
     rows: Vec<MatchRow>,
+    poses: Option<SeasonPoses>,
 }
 
-/// Plays every variant with every seed, two at a time.
+/// The poses of robots compared with the truth.
+#[derive(Clone, PartialEq, Debug, Default)]
+struct SeasonPoses {
+    errors: PoseErrors,
+    kidnappings: Kidnappings,
+}
+
+/// Plays every variant with every seed, two at a time, and then the matches whose poses are
+/// compared.
 ///
 /// # Errors
 /// The diagnostics of the files of the season, or the failure.
 pub fn season(report: impl Fn(&MatchRow) + Sync) -> Result<SeasonTable, String> {
-    SeasonTable::play(&VARIANTS, SEASON_SEEDS, SEASON_LENGTH, report)
+    let table = SeasonTable::play(&VARIANTS, SEASON_SEEDS, SEASON_LENGTH, report)?;
+    let mut poses = SeasonPoses::default();
+    for seed in POSE_SEEDS {
+        let PoseErrors { places, turns } = pose_errors(&MATCH, seed, SEASON_LENGTH)?;
+        poses.errors.places.extend(places);
+        poses.errors.turns.extend(turns);
+        let Kidnappings { recoveries, lost } = kidnap(&MATCH, seed, SEASON_LENGTH)?;
+        poses.kidnappings.recoveries.extend(recoveries);
+        poses.kidnappings.lost += lost;
+    }
+    Ok(SeasonTable { poses: Some(poses), ..table })
 }
 
 fn play_all(
@@ -58,7 +83,7 @@ fn play_all(
         let _ = other.join();
     });
     let results = results.into_inner().unwrap_or_else(PoisonError::into_inner);
-    Ok(SeasonTable { rows: results.into_iter().collect::<Result<_, _>>()? })
+    Ok(SeasonTable { rows: results.into_iter().collect::<Result<_, _>>()?, poses: None })
 }
 
 /// The rows of the short matches, as text.
@@ -71,6 +96,22 @@ pub fn short_rows() -> Result<String, String> {
         let _ = writeln!(text, "{}", play(&MATCH, seed, SHORT_LENGTH)?);
     }
     Ok(text)
+}
+
+impl SeasonPoses {
+    fn verdicts(&self) -> Vec<FigureCheck> {
+        let at_most = |what, value: Option<f64>, bound| {
+            // Without a value the bound does not hold.
+            FigureCheck { what, value: value.unwrap_or(f64::INFINITY), bound, at_least: false }
+        };
+        let mut recoveries = self.kidnappings.recoveries.clone();
+        recoveries.resize(recoveries.len() + self.kidnappings.lost, NOT_FOUND);
+        vec![
+            at_most("pose error: metres, 95 % of the time", quantile(&self.errors.places, 0.95), 0.25),
+            at_most("pose error: radians, 95 % of the time", quantile(&self.errors.turns, 0.95), 0.25),
+            at_most("recovery: seconds, nine of ten kidnapped robots", quantile(&recoveries, 0.9), 10.0),
+        ]
+    }
 }
 
 /// A figure of a season and its bound.
@@ -141,6 +182,15 @@ impl SeasonTable {
             let relation = if at_least { ">=" } else { "<=" };
             let _ = writeln!(text, "{what:<66} {value:>7.2} {relation} {bound:.2}");
         }
+        if let Some(SeasonPoses { errors, kidnappings }) = &self.poses {
+            let (compared, found) = (errors.places.len(), kidnappings.recoveries.len());
+            let _ = writeln!(
+                text,
+                "\n# Poses compared: {compared}. Robots carried away: {}, of which {} were lost for 30 s.",
+                found + kidnappings.lost,
+                kidnappings.lost
+            );
+        }
         text
     }
 
@@ -151,6 +201,12 @@ impl SeasonTable {
     }
 
     fn verdicts(&self) -> Vec<FigureCheck> {
+        let mut verdicts = self.play_verdicts();
+        verdicts.extend(self.poses.iter().flat_map(SeasonPoses::verdicts));
+        verdicts
+    }
+
+    fn play_verdicts(&self) -> Vec<FigureCheck> {
         let at_least = |what, value, bound| FigureCheck { what, value, bound, at_least: true };
         let at_most = |what, value, bound| FigureCheck { what, value, bound, at_least: false };
         let standing = self.mean(&STANDING, |row| row.goals[0].into());

@@ -157,7 +157,8 @@ fn a_robot_that_sees_images_finds_and_moves_the_ball() {
             Box::new(WrappedBody::new(body, blind, 1))
         });
         let mut running = plan.start(MatchOptions { seed: 1, ..MatchOptions::default() }).unwrap();
-        running.advance(Duration::from_secs(20)).unwrap();
+        // READY ends when the blind robots have turned once around.
+        running.advance(Duration::from_secs(32)).unwrap();
         running.pitch().with_world(|world| world.ball().position.norm())
     };
     assert!(displaced(Eyes::Field) > 0.3, "the ball is where it was");

@@ -11,8 +11,6 @@ use monas::MicroStep;
 use monas_match::{MatchOptions, MatchSource};
 use monas_tests::{MATCH, root};
 
-/// Time of the first kick-off.
-const KICK_OFF: Duration = Duration::from_secs(6);
 const SECOND: Duration = Duration::from_secs(1);
 
 /// The trace of a host's chart during one second of a match, starting at `from`.
@@ -34,6 +32,24 @@ fn trace_of(host: &'static str, from: Duration) -> String {
     std::mem::take(&mut *lines.lock().unwrap())
 }
 
+/// Time of the first kick-off.
+fn kick_off() -> Duration {
+    let plan = MatchSource::load(root().join(MATCH.file), &monas::Registry::linked()).unwrap();
+    let mut running = plan.start(MatchOptions { seed: 7, record: None }).unwrap();
+    loop {
+        running.advance(running.now() + SECOND).unwrap();
+        let time = running.pitch().with_world(|world| {
+            let kick_off = |event: &&monas_sim::SimulationEvent| {
+                matches!(event.kind, monas_sim::EventKind::KickOff { .. })
+            };
+            world.events().iter().find(kick_off).map(|event| event.time)
+        });
+        if let Some(time) = time {
+            return Duration::from_secs_f64(time);
+        }
+    }
+}
+
 fn check(host: &'static str, from: Duration, file: &str) {
     let path = root().join("tests/golden").join(file);
     let trace = trace_of(host, from);
@@ -51,7 +67,7 @@ fn the_goalies_first_second() {
 
 #[test]
 fn the_goalies_first_second_of_play() {
-    check("blue-1", KICK_OFF, "goalie-play.trace");
+    check("blue-1", kick_off(), "goalie-play.trace");
 }
 
 #[test]
@@ -61,5 +77,5 @@ fn the_attackers_first_second() {
 
 #[test]
 fn the_attackers_first_second_of_play() {
-    check("blue-2", KICK_OFF, "attacker-play.trace");
+    check("blue-2", kick_off(), "attacker-play.trace");
 }

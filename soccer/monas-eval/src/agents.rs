@@ -4,7 +4,8 @@
 mod goalie;
 mod player;
 
-use monas::{Blackboard, BoxError};
+use monas::{Activity, Blackboard, BoxError};
+use monas_soccer::activities::WalkToKickOff;
 use monas_soccer::activities::motion_requests::request_stand;
 use monas_soccer::{MotionPhase, PlayerState, topics};
 use narukom::PublisherId;
@@ -17,10 +18,12 @@ pub use player::BehaviorPlayer;
 struct StartUp {
     has_stood_up: bool,
     used_ball: Option<(PublisherId, u64)>,
+    kick_off: WalkToKickOff,
 }
 
 impl StartUp {
     /// Whether the behaviour decides now: the robot has stood up, it plays, and the ball is news.
+    /// In READY the robot walks to its place.
     fn is_ready(&mut self, blackboard: &mut Blackboard) -> Result<bool, BoxError> {
         if !self.has_stood_up {
             let phase = blackboard.read(topics::MOTION_STATE).map(|state| state.phase());
@@ -31,6 +34,9 @@ impl StartUp {
             self.has_stood_up = true;
         }
         let state = blackboard.read(topics::GAME_STATE).map(|game| game.player_state());
+        if state == Some(PlayerState::Ready) {
+            _ = self.kick_off.execute(blackboard)?;
+        }
         if state != Some(PlayerState::Playing) {
             return Ok(false);
         }

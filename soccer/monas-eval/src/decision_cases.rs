@@ -12,7 +12,7 @@ use monas_soccer::functionality::geometry::angle_of;
 use monas_soccer::functionality::guard::GoalPositioning;
 use monas_soccer::functionality::head::{Gaze, HeadController};
 use monas_soccer::functionality::motion::{DesiredMotion, Skill};
-use monas_soccer::functionality::support::support_place;
+use monas_soccer::functionality::support::{AHEAD, support_place};
 use monas_soccer::functionality::walk::{Walk, stride_to};
 use monas_soccer::{Ball, GameState, PlayerState, Pose};
 use nalgebra::{Point2, Vector2};
@@ -195,7 +195,7 @@ impl Case {
             }
             Decision::SupportMate => {
                 let here = Point2::from(pose.translation.vector);
-                let place = pose.inverse_transform_point(&support_place(&field, pose * ball, here));
+                let place = pose.inverse_transform_point(&support_place(&field, pose * ball, here, AHEAD));
                 (watch, inside(stride_to(avoid(place, &[ball]), place.coords.norm())))
             }
             // A kick follows a look at the ball; before a dive the head stays.
@@ -208,14 +208,16 @@ impl Case {
 }
 
 /// Scenarios that are no single decision: `play` in the tests of each methodology corresponds.
-const OF_TIME: [&str; 10] = [
+const OF_TIME: [&str; 12] = [
     "at_rest",
     "decides_in_time",
     "kick_off",
     "led_keeps_time",
     "motion_keeps_time",
     "no_message",
+    "penalized",
     "playing",
+    "ready",
     "robot_keeps_time",
     "sensors_keep_time",
     "vision_keeps_time",

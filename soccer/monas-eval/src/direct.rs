@@ -13,11 +13,13 @@ use monas_robot::{Actuators, Anatomy, Announcement, Error, Percepts, Robot, Sens
 use monas_soccer::functionality::field::FieldModel;
 use monas_soccer::functionality::game::{GameTracker, PlayerState};
 use monas_soccer::functionality::head::{Gaze, HeadController};
+use monas_soccer::functionality::kick_off::KickOffWalk;
 use monas_soccer::functionality::motion::{DesiredMotion, MotionArbiter, PendingRequest, Posture};
+use monas_soccer::functionality::placement::PlacementTracker;
 use monas_soccer::functionality::walk::GaitLimits;
 use monas_soccer::perception::{Perception, PerceptionModel};
-use monas_soccer::{Ball, GameState, LedRequest, Pose, Robots, convert};
-use nalgebra::Isometry2;
+use monas_soccer::{Ball, GameState, LedRequest, Placement, Pose, Robots, convert};
+use nalgebra::{Isometry2, Point2};
 use narukom::Timestamp;
 
 pub use goalie::DirectGoalie;
@@ -49,6 +51,7 @@ pub struct SharedMemory {
     pub(crate) ball: Ball,
     pub(crate) pose: Option<Pose>,
     pub(crate) robots: Robots,
+    kick_off: KickOffWalk,
     pub(crate) gaze: GazeRequest,
     pub(crate) motion: DesiredMotion,
     /// The number of the last skill that was requested, and of the last that is over.
@@ -84,8 +87,18 @@ impl SharedMemory {
         self.history.iter().rev().find(|(at, _)| *at <= measured_at).map(|(_, odometry)| *odometry)
     }
 
-    fn is_playing(&self) -> bool {
-        self.game.state() == PlayerState::Playing
+    fn is_on_field(&self) -> bool {
+        matches!(self.game.state(), PlayerState::Ready | PlayerState::Set | PlayerState::Playing)
+    }
+
+    /// Requests the walk to the place for a kick-off.
+    fn take_place(&mut self) {
+        self.gaze = GazeRequest::Scan;
+        let place = self.game.place();
+        let robots: Vec<Point2<f64>> = self.robots.robots.iter().map(|robot| robot.position()).collect();
+        let pose = self.pose.map(|pose| (pose.field_from_robot(), pose.confidence));
+        let walk = self.kick_off.walk(self.now, pose, &place, &robots);
+        self.request(DesiredMotion::Walk(walk));
     }
 }
 
@@ -95,6 +108,7 @@ pub struct DirectRobot<B> {
     memory: SharedMemory,
     tracker: GameTracker,
     button_was_pressed: bool,
+    placements: PlacementTracker,
     model: PerceptionModel,
     perception: Option<Perception>,
     arbiter: MotionArbiter,
@@ -122,6 +136,7 @@ impl<B: Behaviour> DirectRobot<B> {
             ball: Ball::default(),
             pose: None,
             robots: Robots::default(),
+            kick_off: KickOffWalk::default(),
             gaze: GazeRequest::Ahead,
             motion: DesiredMotion::Stand,
             motion_number: 0,
@@ -140,6 +155,7 @@ impl<B: Behaviour> DirectRobot<B> {
             memory,
             tracker: GameTracker::default(),
             button_was_pressed: false,
+            placements: PlacementTracker::default(),
             model: PerceptionModel::default(),
             perception: None,
             arbiter: MotionArbiter::new(GAIT),
@@ -163,7 +179,7 @@ impl<B: Behaviour> DirectRobot<B> {
             self.set_lights();
             self.start_up();
         }
-        if self.is_calibrated && self.memory.is_playing() {
+        if self.is_calibrated && self.memory.is_on_field() {
             if now >= self.vision_at {
                 self.vision_at = now + B::VISION;
                 self.process_image();
@@ -171,7 +187,11 @@ impl<B: Behaviour> DirectRobot<B> {
             if now >= self.decision_at && self.memory.has_new_ball {
                 self.decision_at = now + PERIOD;
                 self.memory.has_new_ball = false;
-                self.behaviour.decide(&mut self.memory);
+                match self.memory.game.state() {
+                    PlayerState::Ready => self.memory.take_place(),
+                    PlayerState::Playing => self.behaviour.decide(&mut self.memory),
+                    _ => {}
+                }
             }
         }
         self.command(now)
@@ -196,27 +216,33 @@ impl<B: Behaviour> DirectRobot<B> {
             self.tracker.press_chest_button();
         }
         self.button_was_pressed = percepts.sensors.chest_button;
+        let said = memory.announcement.unwrap_or_default();
+        let is_lifted = percepts.sensors.posture() == monas_robot::Posture::Lifted;
+        self.placements.feel(is_lifted, convert::phase(&said), said.penalized);
     }
 
     fn control_game(&mut self) {
         let player_state = monas_soccer::PlayerState::from(self.tracker.state()).into();
-        let FieldModel { area_depth, area_width, .. } = FieldModel::LEAGUE_2010;
+        let FieldModel { area_depth, area_width, circle_radius, .. } = FieldModel::LEAGUE_2010;
+        let (by_hand, placement) = self.placements.placements();
         let said = self.memory.announcement.unwrap_or_default();
         self.memory.game = GameState {
             player_state,
             team_colour: said.team_colour,
             goal_to_attack: said.goal_to_attack,
-            placements: said.placements,
-            placed_x: said.placed_x,
-            placed_y: said.placed_y,
-            placed_heading: said.placed_heading,
+            number: said.number,
+            kick_off_own: said.kick_off,
+            placements: by_hand,
+            placement: Placement::from(placement).into(),
             field_length: said.field_length,
             field_width: said.field_width,
             goal_width: said.goal_width,
             area_depth,
             area_width,
+            circle_radius,
             ..GameState::default()
-        };
+        }
+        .with_place();
     }
 
     fn set_lights(&mut self) {

@@ -35,6 +35,13 @@ pub enum Sighting {
         /// Its apparent position.
         percept: Percept,
     },
+    /// A place of the lines. Its distance is computed from its elevation.
+    Line {
+        /// What it is.
+        feature: LineFeature,
+        /// Its apparent position.
+        percept: Percept,
+    },
     /// Another robot.
     Robot {
         /// The colour of its team.
@@ -42,6 +49,17 @@ pub enum Sighting {
         /// Its apparent position.
         percept: Percept,
     },
+}
+
+/// A place of the lines that a picture shows as such.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum LineFeature {
+    /// The corner of two lines: of the field or of a goal area.
+    Corner,
+    /// A place where a line ends at another: at the halfway line or at a goal area.
+    Junction,
+    /// The middle of the centre circle.
+    CentreCircle,
 }
 
 /// The state of the world and a robot at the time of a picture.
@@ -74,6 +92,7 @@ impl CameraView<'_> {
             self.look_for_goal(side, stream, sightings);
         }
         self.look_for_robots(stream, sightings);
+        self.look_for_lines(stream, sightings);
     }
 
     fn look_for_ball(&self, stream: &mut RandomStream, sightings: &mut Vec<Sighting>) {
@@ -112,6 +131,16 @@ impl CameraView<'_> {
             if self.sees(&target, Some(index), stream) {
                 let percept = self.percept(&target, stream);
                 sightings.push(Sighting::Robot { colour: self.colours[robot.team], percept });
+            }
+        }
+    }
+
+    fn look_for_lines(&self, stream: &mut RandomStream, sightings: &mut Vec<Sighting>) {
+        for (feature, place) in self.scene.field.line_features() {
+            let target = self.target(place, (0.0, 0.0), self.physics().line_range);
+            if self.sees(&target, None, stream) {
+                let percept = self.percept_by_elevation(&target, 0.0, stream);
+                sightings.push(Sighting::Line { feature, percept });
             }
         }
     }
@@ -348,7 +377,7 @@ mod tests {
         };
         assert!(post(Side::Left) && post(Side::Right), "{sightings:?}");
         assert!(sightings.iter().any(|s| matches!(s, Sighting::Robot { colour: TeamColour::Red, .. })));
-        assert_eq!(sightings.len(), 3);
+        assert_eq!(without_lines(&sightings).len(), 3);
     }
 
     #[test]
@@ -356,7 +385,33 @@ mod tests {
         let mut stage = stage(Vector::new(-1.0, 0.0));
         stage.robots[0].pose = Pose::new(2.0, 0.0, 0.6);
         let sightings = stage.look(&mut RandomStream::new(1, "camera"));
-        assert!(matches!(sightings[..], [Sighting::Post { side: None, .. }]), "{sightings:?}");
+        let seen = without_lines(&sightings);
+        assert!(matches!(seen[..], [Sighting::Post { side: None, .. }]), "{sightings:?}");
+    }
+
+    fn without_lines(sightings: &[Sighting]) -> Vec<Sighting> {
+        sightings.iter().filter(|seen| !matches!(seen, Sighting::Line { .. })).copied().collect()
+    }
+
+    #[test]
+    fn corners_and_junctions_of_lines_are_seen_where_they_are() {
+        let mut stage = stage(Vector::new(-1.0, 0.0));
+        stage.robots[0].pose = Pose::new(1.5, 1.1, 0.0);
+        let sightings = stage.look(&mut RandomStream::new(1, "camera"));
+        let seen = |wanted: LineFeature, place: Vector| {
+            let place = stage.robots[0].pose.to_own(place);
+            sightings.iter().any(|seen| match seen {
+                Sighting::Line { feature, percept } => {
+                    *feature == wanted
+                        && (percept.bearing - direction_of(place)).abs() < 0.05
+                        && (percept.distance - place.norm()).abs() < 0.3
+                }
+                _ => false,
+            })
+        };
+        assert!(seen(LineFeature::Corner, Vector::new(2.4, 1.1)), "{sightings:?}");
+        assert!(seen(LineFeature::Junction, Vector::new(3.0, 1.1)), "{sightings:?}");
+        assert!(!seen(LineFeature::Corner, Vector::new(2.4, -1.1)), "it is out of view");
     }
 
     #[test]

@@ -14,7 +14,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use monas_robot::{Announcement, BodyKind, BodySite};
 
-use crate::{Error, EventKind, GameState, Pose, SimulatedWorld};
+use crate::{Error, SimulatedWorld};
 
 use radio_channel::RadioChannel;
 
@@ -42,41 +42,26 @@ pub struct SharedField {
     world: Arc<Mutex<SharedWorld>>,
 }
 
-/// The world, and the last pose at which the referee placed each robot.
+/// The world, and what its robots hear.
 pub(crate) struct SharedWorld {
     pub(crate) world: SimulatedWorld,
-    pub(crate) placements: Vec<Placement>,
     /// Radio messages that the robots have not received yet.
     pub(crate) air: RadioChannel,
-    seen_events: usize,
     /// What a referee outside the simulation has announced to each robot: nothing, if it has not
     /// spoken yet; none without such a referee.
     pub(crate) league: Option<Vec<Announcement>>,
 }
 
-/// How often a robot was placed by hand, and its last such pose in the field frame.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Placement {
-    pub(crate) count: u32,
-    pub(crate) pose: Pose,
-}
-
 impl SharedField {
-    /// Shares a world. The current poses of its robots count as their first placement.
+    /// Shares a world.
     pub fn new(world: SimulatedWorld) -> SharedField {
-        let placements =
-            world.robots().iter().map(|robot| Placement { count: 1, pose: robot.pose }).collect();
         let air = RadioChannel::new(world.robots(), world.radio().clone(), world.seed());
-        SharedField {
-            world: Arc::new(Mutex::new(SharedWorld { world, placements, air, seen_events: 0, league: None })),
-        }
+        SharedField { world: Arc::new(Mutex::new(SharedWorld { world, air, league: None })) }
     }
 
     /// Advances the world by one [`STEP`](crate::STEP).
     pub fn step(&self) {
-        let mut ground = self.lock();
-        ground.world.step();
-        ground.note_placements();
+        self.lock().world.step();
     }
 
     /// Lets a referee outside the simulation decide. Until it has [announced](Self::follow)
@@ -90,8 +75,8 @@ impl SharedField {
     }
 
     /// Carries out what a referee outside the simulation announces to each robot, in the order of
-    /// the robots. The bodies receive the announcements, with the field, the placements by hand and
-    /// the jerseys of the simulation.
+    /// the robots. The bodies receive the announcements, with the field and the jerseys of the
+    /// simulation.
     ///
     /// # Errors
     /// There are more or fewer announcements than robots.
@@ -126,27 +111,5 @@ impl SharedField {
 
     pub(crate) fn lock(&self) -> MutexGuard<'_, SharedWorld> {
         self.world.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-}
-
-impl SharedWorld {
-    /// Records placements by hand: before a half or a kick-off, and after a penalty.
-    fn note_placements(&mut self) {
-        let mut placed = Vec::new();
-        for event in &self.world.events()[self.seen_events..] {
-            match event.kind {
-                EventKind::StateChanged { to: GameState::Ready | GameState::Initial, .. } => {
-                    placed.extend(0..self.placements.len());
-                }
-                EventKind::Return { robot } => placed.push(robot),
-                _ => {}
-            }
-        }
-        self.seen_events = self.world.events().len();
-        for robot in placed {
-            let Placement { count, pose } = &mut self.placements[robot];
-            *count += 1;
-            *pose = self.world.robots()[robot].pose;
-        }
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::parameters::parameters;
 use crate::pose::Vector;
-use crate::{Error, ErrorKind, FieldSide};
+use crate::{Error, ErrorKind, FieldSide, LineFeature};
 
 parameters! {
     /// The measures of a field.
@@ -70,6 +70,21 @@ impl FieldGeometry {
         let x = side.sign() * self.half_length();
         let y = side.sign() * self.goal_width / 2.0;
         [Vector::new(x, y), Vector::new(x, -y)]
+    }
+
+    /// The places of the lines that a picture can show as such.
+    pub(crate) fn line_features(&self) -> [(LineFeature, Vector); 15] {
+        let (end, side) = (self.half_length(), self.half_width());
+        let (front, beside) = (end - self.goal_area_depth, self.goal_area_width / 2.0);
+        let quarter = |feature, x: f64, y: f64| {
+            [(x, y), (x, -y), (-x, y), (-x, -y)].map(|(x, y)| (feature, Vector::new(x, y)))
+        };
+        let [a, b, c, d] = quarter(LineFeature::Corner, end, side);
+        let [e, f, g, h] = quarter(LineFeature::Corner, front, beside);
+        let [i, j, k, l] = quarter(LineFeature::Junction, end, beside);
+        let halfway = [side, -side].map(|y| (LineFeature::Junction, Vector::new(0.0, y)));
+        let centre = (LineFeature::CentreCircle, Vector::zeros());
+        [a, b, c, d, e, f, g, h, i, j, k, l, halfway[0], halfway[1], centre]
     }
 
     /// Whether a point is in the goal area of `side`.

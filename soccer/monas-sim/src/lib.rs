@@ -113,7 +113,7 @@ mod statistics;
 mod world;
 
 pub use body_phase::{BodyPhase, Direction};
-pub use camera::{Percept, Sighting};
+pub use camera::{LineFeature, Percept, Sighting};
 pub use command::{Command, Motion};
 pub use draw::render_svg;
 pub use embodied::{FieldBody, SharedField};

@@ -150,6 +150,9 @@ parameters! {
         post_range: "m" = 9.0 in 0.5 to 100.0;
         /// The same for robots (chosen).
         robot_range: "m" = 5.0 in 0.5 to 100.0;
+        /// The same for corners and junctions of lines (chosen: a line of 50 mm is then 2 pixels
+        /// high).
+        line_range: "m" = 3.5 in 0.5 to 100.0;
         /// Probability that an object well within range and view is missed in one picture (chosen).
         sight_miss: "1" = 0.04 in 0.0 to 1.0;
 

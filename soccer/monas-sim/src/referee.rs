@@ -1,12 +1,12 @@
 //! The referee: states of the game, clock, score, penalties, and the decisions of each step.
 //!
 //! The referee decides on the ground truth and emits events; the world carries them out. Every half
-//! begins in INITIAL and its clock runs until the half ends. A goal leads from PLAYING to READY;
-//! READY places all robots for a kick-off.
+//! begins in INITIAL, for which all robots are placed by hand, and its clock runs until the half
+//! ends. A goal leads from PLAYING to READY, in which robots walk to their places until none moves
+//! any more; SET places those by hand that stand where they must not.
 //!
 //! Not judged are robots that enter the centre circle before the ball is touched, goals straight
-//! from a kick-off, and robots that leave the field: the first two cannot occur while robots are
-//! placed by hand, the last do not affect play.
+//! from a kick-off, and robots that leave the field, which do not affect play.
 
 mod game_order;
 mod referee_call;
@@ -15,8 +15,8 @@ use crate::fouls::FoulDetector;
 use crate::rng::RandomStream;
 use crate::state::WorldView;
 use crate::{
-    BallState, EventKind, FieldSide, GoalColour, MatchRules, Offence, RobotSetup, STEP, TeamColour,
-    TeamSetup, restart,
+    BallState, BodyPhase, EventKind, FieldSide, GoalColour, MatchRules, Offence, RobotSetup, STEP,
+    TeamColour, TeamSetup, restart,
 };
 
 pub use game_order::GameOrder;
@@ -28,7 +28,7 @@ pub enum GameState {
     /// Robots are switched on and wait.
     #[default]
     Initial,
-    /// Robots and ball are placed for a kick-off.
+    /// Robots walk to their places for a kick-off.
     Ready,
     /// Everything is in place; robots must not move.
     Set,
@@ -100,6 +100,8 @@ pub struct Referee {
     state_steps: u64,
     half_steps: u64,
     untouched_steps: u64,
+    /// Steps since a robot last moved.
+    still_steps: u64,
     kick_off: usize,
     first_kick_off: usize,
     defends: [FieldSide; 2],
@@ -139,6 +141,7 @@ impl Referee {
             state_steps: 0,
             half_steps: 0,
             untouched_steps: 0,
+            still_steps: 0,
             kick_off: first_kick_off,
             first_kick_off,
             defends: [teams[0].plays, teams[1].plays],
@@ -225,7 +228,7 @@ impl Referee {
 
     /// Whether robots must not move their legs.
     pub(crate) fn holds_robots(&self) -> bool {
-        self.state != GameState::Playing
+        !matches!(self.state, GameState::Ready | GameState::Playing)
             || self.is_stopped
             || self.order.as_ref().is_some_and(|order| order.is_halted)
     }
@@ -265,7 +268,7 @@ impl Referee {
         }
         match self.state {
             GameState::Initial => self.leave_after(self.rules.initial_duration, GameState::Ready, events),
-            GameState::Ready => self.leave_after(self.rules.ready_duration, GameState::Set, events),
+            GameState::Ready => self.update_ready(scene, events),
             GameState::Set => self.leave_after(self.rules.set_duration, GameState::Playing, events),
             GameState::Playing => self.update_playing(scene, shooter, events),
             GameState::Finished => {}
@@ -282,10 +285,20 @@ impl Referee {
         }
     }
 
+    /// READY ends when its time is over, or when no robot makes progress.
+    fn update_ready(&mut self, scene: &WorldView<'_>, events: &mut Vec<EventKind>) {
+        let is_still = scene.on_field().all(|(_, robot)| robot.phase == BodyPhase::Standing);
+        self.still_steps = if is_still { self.still_steps + 1 } else { 0 };
+        let is_over = self.still_steps >= steps(self.rules.ready_still);
+        let duration = if is_over { 0.0 } else { self.rules.ready_duration };
+        self.leave_after(duration, GameState::Set, events);
+    }
+
     fn change_state(&mut self, to: GameState, events: &mut Vec<EventKind>) {
         events.push(EventKind::StateChanged { from: self.state, to });
         self.state = to;
         self.state_steps = 0;
+        self.still_steps = 0;
         if to == GameState::Ready {
             self.last_touch = None;
             self.touched_since_kick_off = false;

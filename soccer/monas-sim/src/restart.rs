@@ -108,6 +108,36 @@ pub(crate) fn return_pose(scene: &WorldView<'_>, robot: usize) -> Pose {
     Pose::facing(nearest(wanted, limit, is_free), Vector::zeros())
 }
 
+/// The free pose for a robot nearest to a wanted one.
+pub(crate) fn free_for_robot(scene: &WorldView<'_>, robot: usize, wanted: Pose) -> Pose {
+    let limit = Vector::new(scene.field.half_length(), scene.field.half_width());
+    let apart = 2.0 * scene.physics.robot_radius;
+    let is_free = |place: Vector| {
+        let mut others = scene.on_field().filter(|(index, _)| *index != robot);
+        others.all(|(_, other)| (other.pose.position - place).norm() > apart)
+    };
+    Pose { position: nearest(wanted.position, limit, is_free), ..wanted }
+}
+
+/// Whether a robot stands where it may stand at a kick-off: upright in its own half and on the
+/// field, outside the centre circle unless its team kicks off, and outside its own goal area unless
+/// it is the goalie.
+pub(crate) fn is_legal_at_kick_off(
+    scene: &WorldView<'_>,
+    robot: usize,
+    defends: FieldSide,
+    kicks_off: bool,
+) -> bool {
+    let (field, state) = (scene.field, &scene.robots[robot]);
+    let position = state.pose.position;
+    let clear = position.norm() >= field.centre_circle_radius;
+    state.phase.is_upright()
+        && field.contains(position)
+        && position.x * defends.sign() > 0.0
+        && (clear || kicks_off)
+        && (state.is_goalie() || !field.in_goal_area(defends, position))
+}
+
 /// Where a penalized robot waits: beside the field, in its own half.
 pub(crate) fn waiting_pose(field: &FieldGeometry, defends: FieldSide, robot: &RobotState) -> Pose {
     let along = 0.4 + 0.35 * f64::from(robot.number);

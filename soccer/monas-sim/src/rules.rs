@@ -11,9 +11,12 @@ parameters! {
         half_duration: "s" = 300.0 in 5.0 to 36000.0;
         /// Time in INITIAL before each half (chosen).
         initial_duration: "s" = 1.0 in 0.0 to 600.0;
-        /// Time in READY, at whose beginning the referee places robots and ball by hand (45 s in
-        /// the league, where robots walk there).
-        ready_duration: "s" = 3.0 in 0.0 to 600.0;
+        /// The most time in READY, in which robots walk to their places; at its end the referee
+        /// places by hand those that stand where they must not.
+        ready_duration: "s" = 45.0 in 0.0 to 600.0;
+        /// Time without a moving robot after which the referee ends READY (chosen; in the league he
+        /// ends it when there is no significant progress).
+        ready_still: "s" = 3.0 in 0.0 to 600.0;
         /// Time in SET (chosen).
         set_duration: "s" = 2.0 in 0.0 to 600.0;
         /// Time a penalized robot stays off the field.
@@ -52,7 +55,8 @@ impl MatchRules {
     /// [`Inconsistent`](crate::ErrorKind::Inconsistent).
     pub fn validate(&self) -> Result<(), Error> {
         self.check_ranges()?;
-        if self.initial_duration + self.ready_duration + self.set_duration >= self.half_duration {
+        let ready = self.ready_duration.min(self.ready_still);
+        if self.initial_duration + ready + self.set_duration >= self.half_duration {
             return Err(Error::new(ErrorKind::Inconsistent, "a half ends before its play begins"));
         }
         Ok(())

@@ -26,6 +26,8 @@ pub struct Senses {
     pub progress: f64,
     /// The supporting foot, while walking.
     pub support: Option<Side>,
+    /// Whether the feet carry nothing: a person has lifted the body, or taken it off the field.
+    pub is_lifted: bool,
     /// The buttons and bumpers that are pressed.
     pub buttons: Buttons,
     /// Whether `sightings` is a picture taken since the last reading.

@@ -51,7 +51,12 @@ struct SensorState {
     vision: RandomStream,
     pictures: u64,
     turn: f64,
+    /// The step until which a person holds the robot in the air.
+    lifted_until: u64,
 }
+
+/// How long a person holds a robot in the air before it stands at its new place, s.
+const LIFTED: f64 = 0.5;
 
 impl SimulatedWorld {
     /// Builds a world. Robots stand at their kick-off positions, the ball lies at the centre.
@@ -88,7 +93,7 @@ impl SimulatedWorld {
             seed,
             teams,
         };
-        world.place_for_kick_off();
+        world.place_for_kick_off(|_, _| true);
         Ok(world)
     }
 
@@ -425,9 +430,11 @@ impl SimulatedWorld {
 
     fn carry_out(&mut self, event: &EventKind) {
         match *event {
-            EventKind::StateChanged { to: GameState::Ready | GameState::Initial, .. } => {
-                self.place_for_kick_off()
+            EventKind::StateChanged { to: GameState::Initial, .. } => self.place_for_kick_off(|_, _| true),
+            EventKind::StateChanged { to: GameState::Ready, .. } => {
+                self.set_ball(Vector::zeros(), Vector::zeros());
             }
+            EventKind::StateChanged { to: GameState::Set, .. } => self.place_for_kick_off(is_misplaced),
             EventKind::ThrowIn { position, .. } | EventKind::DropBall { position } => {
                 self.set_ball(position, Vector::zeros());
             }
@@ -437,7 +444,8 @@ impl SimulatedWorld {
         }
     }
 
-    fn place_for_kick_off(&mut self) {
+    /// Places the ball at the centre, and the robots that have to be placed.
+    fn place_for_kick_off(&mut self, must_be_placed: impl Fn(&Self, usize) -> bool) {
         self.set_ball(Vector::zeros(), Vector::zeros());
         let mut ranks = [0; 2];
         for robot in 0..self.bodies.len() {
@@ -446,12 +454,11 @@ impl SimulatedWorld {
             let kicks_off = self.referee.kick_off_team() == team;
             let rank = ranks[team];
             ranks[team] += usize::from(number != GOALIE);
-            if on_field {
+            if on_field && must_be_placed(self, robot) {
                 let (field, physics) = (&self.now.field, &self.now.physics);
-                self.set_robot(
-                    robot,
-                    restart::kick_off_pose(field, physics, defends, kicks_off, number, rank),
-                );
+                let wanted = restart::kick_off_pose(field, physics, defends, kicks_off, number, rank);
+                let pose = restart::free_for_robot(&self.now.scene(), robot, wanted);
+                self.put_down(robot, pose);
             }
         }
     }
@@ -468,7 +475,13 @@ impl SimulatedWorld {
         let pose = restart::return_pose(&self.now.scene(), robot);
         self.now.robots[robot].on_field = true;
         self.arena.set_present(robot, true);
+        self.put_down(robot, pose);
+    }
+
+    /// A person places a robot, which feels that it is lifted.
+    fn put_down(&mut self, robot: usize, pose: Pose) {
         self.set_robot(robot, pose);
+        self.sensors[robot].lifted_until = self.steps + (LIFTED / STEP) as u64;
     }
 
     fn set_ball(&mut self, position: Vector, velocity: Vector) {
@@ -499,6 +512,7 @@ impl SimulatedWorld {
         senses.torso_pitch = pitch + sensors.noise.normal(physics.tilt_noise);
         senses.gyro =
             [roll_rate, pitch_rate, sensors.turn].map(|rate| rate + sensors.noise.normal(physics.gyro_noise));
+        senses.is_lifted = !self.now.robots[robot].on_field || self.steps < sensors.lifted_until;
         senses.phase = body.phase;
         senses.progress = progress;
         senses.support = body.gait.support();
@@ -525,8 +539,17 @@ impl SensorState {
             vision: RandomStream::new(seed, &format!("{path}/vision")),
             pictures: 0,
             turn: 0.0,
+            lifted_until: 0,
         }
     }
+}
+
+/// Whether a robot stands where it must not stand at a kick-off, or does not stand.
+fn is_misplaced(world: &SimulatedWorld, robot: usize) -> bool {
+    let RobotState { team, .. } = world.now.robots[robot];
+    let defends = world.referee.defends()[team];
+    let kicks_off = world.referee.kick_off_team() == team;
+    !restart::is_legal_at_kick_off(&world.now.scene(), robot, defends, kicks_off)
 }
 
 /// The side of a body on which a ball passes: where its line crosses the body's lateral axis, or,

@@ -33,14 +33,49 @@ fn a_half_goes_from_initial_to_play() {
 }
 
 #[test]
-fn robots_are_held_before_play() {
+fn robots_walk_in_ready_and_are_held_before_and_after_it() {
     let mut world = world(2);
-    let before = world.robots()[1].pose;
-    world.command(1, Command::walk(0.2, 0.0, 0.0)).unwrap();
-    run(&mut world, 5.0);
-    assert_eq!(world.robots()[1].pose.position, before.position);
+    let place = |world: &SimulatedWorld| world.robots()[2].pose.position;
+    let before = place(&world);
+    world.command(2, Command::walk(0.2, 0.0, 0.0)).unwrap();
+    run(&mut world, 0.9);
+    assert_eq!((world.referee().state(), place(&world)), (GameState::Initial, before));
     run(&mut world, 2.0);
-    assert_ne!(world.robots()[1].pose.position, before.position);
+    assert!((place(&world) - before).norm() > 0.2);
+    world.command(2, Command::new(Motion::Stand)).unwrap();
+    while world.referee().state() == GameState::Ready {
+        world.step();
+    }
+    assert!((5.9..7.0).contains(&world.time()), "READY ends 3 s after the last motion: {}", world.time());
+    let before = place(&world);
+    world.command(2, Command::walk(0.2, 0.0, 0.0)).unwrap();
+    run(&mut world, 1.0);
+    assert_eq!((world.referee().state(), place(&world)), (GameState::Set, before));
+}
+
+#[test]
+fn set_places_only_robots_that_stand_where_they_must_not() {
+    let mut world = world_with_rules(2, |rules| rules.ready_duration = 20.0);
+    run(&mut world, 1.1);
+    let legal = Pose::new(-2.0, -1.0, 1.0);
+    world.place_robot(2, legal).unwrap();
+    world.place_robot(1, Pose::new(1.5, 1.0, 0.0)).unwrap();
+    // one that does not stop does not prolong READY beyond its time
+    world.command(1, Command::walk(0.0, 0.0, 0.5)).unwrap();
+    run(&mut world, 19.8);
+    assert_eq!(world.referee().state(), GameState::Ready);
+    run(&mut world, 0.3);
+    assert_eq!(world.referee().state(), GameState::Set);
+    assert_eq!(world.robots()[2].pose.position, legal.position);
+    assert!(world.robots()[1].pose.position.x < 0.0, "{:?}", world.robots()[1].pose);
+    let mut senses = monas_sim::Senses::default();
+    let mut is_lifted = |world: &mut SimulatedWorld, robot| {
+        world.sense(robot, &mut senses).unwrap();
+        senses.is_lifted
+    };
+    assert!(is_lifted(&mut world, 1) && !is_lifted(&mut world, 2), "it feels that it is placed");
+    run(&mut world, 0.5);
+    assert!(!is_lifted(&mut world, 1));
 }
 
 #[test]

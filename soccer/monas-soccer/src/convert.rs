@@ -13,15 +13,18 @@ use crate::functionality::field::{FieldModel, Goal};
 use crate::functionality::game;
 use crate::functionality::geometry::{self, heading};
 use crate::functionality::interception::Crossing;
+use crate::functionality::kick_off::kick_off_place;
+use crate::functionality::landmarks::{GoalPost, Landmark, LandmarkSighting};
 use crate::functionality::lights;
-use crate::functionality::localisation::{GoalPost, Localisation, PostSighting};
+use crate::functionality::localisation::Localisation;
 use crate::functionality::motion::{
     BodyReport, DesiredMotion, MotionCommand, PendingRequest, Posture, Skill, SkillEnd,
 };
+use crate::functionality::placement;
 use crate::functionality::walk::Walk;
 use crate::{
-    Ball, Colour, GameState, LedRequest, MotionKind, MotionRequest, MotionResult, OtherRobot, PlayerState,
-    Pose, SensorEntry,
+    Ball, Colour, GameState, LedRequest, MotionKind, MotionRequest, MotionResult, OtherRobot, Placement,
+    PlayerState, Pose, SensorEntry,
 };
 
 /// `time_to_cross` of a ball that will not cross, seconds.
@@ -104,7 +107,20 @@ impl GameState {
             goal_width: self.goal_width,
             area_depth: self.area_depth,
             area_width: self.area_width,
+            circle_radius: self.circle_radius,
         }
+    }
+
+    /// The player's place for the next kick-off.
+    pub fn place(&self) -> Isometry2<f64> {
+        geometry::pose(self.place_x, self.place_y, self.place_heading)
+    }
+
+    /// The same state with the place for the next kick-off, which follows from the number.
+    pub fn with_place(self) -> GameState {
+        let place = kick_off_place(&self.field(), self.number, self.kick_off_own);
+        let (place_x, place_y) = (place.translation.x, place.translation.y);
+        GameState { place_x, place_y, place_heading: heading(&place), ..self }
     }
 
     /// The goal of the given colour. Only yellow and blue distinguish the goals: both goals may be
@@ -138,6 +154,15 @@ impl From<game::PlayerState> for PlayerState {
             game::PlayerState::Playing => PlayerState::Playing,
             game::PlayerState::Penalized => PlayerState::Penalized,
             game::PlayerState::Finished => PlayerState::Finished,
+        }
+    }
+}
+
+impl From<placement::Placement> for Placement {
+    fn from(placement: placement::Placement) -> Placement {
+        match placement {
+            placement::Placement::OwnHalf => Placement::OwnHalf,
+            placement::Placement::HalfwayLine => Placement::HalfwayLine,
         }
     }
 }
@@ -218,17 +243,20 @@ pub(crate) fn position(sighting: &Sighting) -> Point2<f64> {
     geometry::polar(sighting.distance, sighting.bearing).into()
 }
 
-/// A sighting of a goal post; none for other objects, and for a post that does not say of which
+/// A sighting of a landmark; none for other objects, and for a post that does not say of which
 /// goal it is.
-pub(crate) fn post(sighting: &Sighting, game: &GameState) -> Option<PostSighting> {
-    let post = match sighting.kind() {
-        ObjectKind::LeftPost => GoalPost::Left,
-        ObjectKind::RightPost => GoalPost::Right,
-        ObjectKind::SomePost => GoalPost::Either,
-        _ => return None,
+pub(crate) fn landmark(sighting: &Sighting, game: &GameState) -> Option<LandmarkSighting> {
+    let post = |post| Some(Landmark::Post(game.goal_of(sighting.colour)?, post));
+    let landmark = match sighting.kind() {
+        ObjectKind::LeftPost => post(GoalPost::Left)?,
+        ObjectKind::RightPost => post(GoalPost::Right)?,
+        ObjectKind::SomePost => post(GoalPost::Either)?,
+        ObjectKind::LineCorner => Landmark::Corner,
+        ObjectKind::LineJunction => Landmark::Junction,
+        ObjectKind::CentreCircle => Landmark::CentreCircle,
+        ObjectKind::ObjectUnknown | ObjectKind::Ball | ObjectKind::Robot => return None,
     };
-    let goal = game.goal_of(sighting.colour)?;
-    Some(PostSighting { goal, post, distance: sighting.distance, bearing: sighting.bearing })
+    Some(LandmarkSighting { landmark, distance: sighting.distance, bearing: sighting.bearing })
 }
 
 /// The commands to the body: motion, head (yaw, pitch) and LEDs.

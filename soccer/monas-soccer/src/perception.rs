@@ -9,11 +9,13 @@ use narukom::Timestamp;
 
 use crate::functionality::ball_filter::{BallEstimate, BallFilter, BallModel};
 use crate::functionality::field::FieldModel;
-use crate::functionality::geometry::pose;
+use crate::functionality::geometry;
 use crate::functionality::interception::{Crossing, crossing};
-use crate::functionality::localisation::{Localisation, LocalisationModel};
+use crate::functionality::landmarks::LandmarkSighting;
+use crate::functionality::localisation::{Localisation, LocalisationModel, PoseEstimate};
 use crate::functionality::obstacles::{Obstacle, Obstacles};
-use crate::{Ball, GameState, OtherRobot, Pose, Robots, convert};
+use crate::functionality::placement;
+use crate::{Ball, GameState, OtherRobot, Placement, Pose, Robots, convert};
 
 /// When a ball counts as found and as approaching.
 #[derive(Clone, Copy, Debug)]
@@ -47,12 +49,17 @@ pub struct Perception {
     ball_at: Timestamp,
     localisation: Option<Localisation>,
     placements: Option<u32>,
+    /// The landmarks of the current image; kept to reuse its allocation.
+    landmarks: Vec<LandmarkSighting>,
     obstacles: Obstacles,
     fallen: bool,
 }
 
 /// Distance of the nearest robot when there is none, metres.
 const NOBODY: f64 = 1e6;
+
+/// Standard deviation of a pose at which the robot has put itself: metres and radians.
+const PLACED: (f64, f64) = (0.05, 0.05);
 
 impl Perception {
     /// Filters that have seen nothing. The odometry is the pose of the robot relative to any fixed
@@ -66,6 +73,7 @@ impl Perception {
             ball_at: moment,
             localisation: None,
             placements: None,
+            landmarks: Vec::new(),
             obstacles: Obstacles::default(),
             fallen: false,
         }
@@ -76,14 +84,24 @@ impl Perception {
         self.taken_at
     }
 
-    /// Applies a placement by the referee and discards earlier sightings.
+    /// Applies a placement and discards earlier sightings. After a placement by a person, every
+    /// pose that the rules allow is possible.
     pub fn apply_placement(&mut self, game: &GameState, now: Timestamp, odometry: Isometry2<f64>) {
         if self.placements == Some(game.placements) || game.placements == 0 {
             return;
         }
         self.placements = Some(game.placements);
-        let placed = pose(game.placed_x, game.placed_y, game.placed_heading);
-        self.localisation = Some(Localisation::new(LocalisationModel::default(), placed));
+        let field = game.field();
+        let poses = match game.placement() {
+            Placement::KnownPose => vec![PoseEstimate {
+                field_from_robot: geometry::pose(game.placed_x, game.placed_y, game.placed_heading),
+                place_deviation: PLACED.0,
+                turn_deviation: PLACED.1,
+            }],
+            Placement::OwnHalf => placement::Placement::OwnHalf.poses(&field),
+            Placement::HalfwayLine => placement::Placement::HalfwayLine.poses(&field),
+        };
+        self.localisation = Some(Localisation::new(LocalisationModel::default(), &poses));
         self.ball.forget();
         self.obstacles.forget();
         (self.moment, self.odometry, self.ball_at) = (now, odometry, now);
@@ -103,10 +121,9 @@ impl Perception {
     pub fn see(&mut self, image: &Sightings, game: &GameState, odometry: &Isometry2<f64>) {
         self.taken_at = image.taken_at;
         self.advance(Timestamp::from_nanos(image.taken_at), odometry);
+        self.landmarks.clear();
         for sighting in &image.objects {
-            if let (Some(post), Some(filter)) = (convert::post(sighting, game), &mut self.localisation) {
-                filter.correct(&game.field(), &post);
-            }
+            self.landmarks.extend(convert::landmark(sighting, game));
             match sighting.kind() {
                 ObjectKind::Ball => self.see_ball(sighting),
                 ObjectKind::Robot => self.obstacles.see(Obstacle {
@@ -116,6 +133,9 @@ impl Perception {
                 }),
                 _ => {}
             }
+        }
+        if let Some(filter) = &mut self.localisation {
+            filter.correct(&game.field(), &self.landmarks);
         }
     }
 

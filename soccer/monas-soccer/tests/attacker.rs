@@ -36,8 +36,8 @@ fn it_scores_wherever_robot_and_ball_are() {
 }
 
 #[test]
-fn outside_play_it_neither_looks_nor_moves() {
-    for phase in [GamePhase::Initial, GamePhase::Ready, GamePhase::Set, GamePhase::Finished] {
+fn before_ready_and_outside_play_it_does_not_move() {
+    for phase in [GamePhase::Initial, GamePhase::Set, GamePhase::Finished] {
         let world = Shared::new(2, at(-1.0, 0.0, 0.0), Point2::origin());
         world.lock().phase = phase;
         let mut simulation = world.play("attacker.xml");
@@ -46,10 +46,23 @@ fn outside_play_it_neither_looks_nor_moves() {
             None
         );
         let statistics = simulation.statistics();
-        assert_eq!(statistics.calls("robot", "Vision"), 0, "{phase:?}");
+        assert_eq!(statistics.calls("robot", "WalkToKickOff"), 0, "{phase:?}");
         assert_eq!(statistics.calls("robot", "WalkTowardsBall"), 0, "{phase:?}");
         assert!(statistics.calls("robot", "MotionController") >= 49, "{phase:?}");
     }
+}
+
+#[test]
+fn in_ready_it_walks_to_its_place_and_stands_there() {
+    let world = Shared::new(2, at(-2.0, 1.0, 0.0), Point2::origin());
+    world.lock().phase = GamePhase::Ready;
+    let mut simulation = world.play("attacker.xml");
+    world.until(&mut simulation, 20.0, |_| false);
+    let place = world.lock().field_from_robot;
+    // outside the centre circle: the others kick off
+    assert!((place.translation.vector - Vector2::new(-0.81, 0.0)).norm() < 0.15, "{place}");
+    world.until(&mut simulation, 21.0, |_| false);
+    assert_eq!(world.lock().field_from_robot, place);
 }
 
 #[test]

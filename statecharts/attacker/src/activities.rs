@@ -4,7 +4,7 @@ use ::monas::generated::Instance;
 use ::monas_soccer::activities::{
     AlignWithBall, LedHandler, LeftKick, LookAtGoal, MotionController, RightKick, RobotController,
     SearchBall, SendCalibration, Sensors, Stand, SupportMate, TrackBall, TurnAround, Vision,
-    WaitForBallMessage, WalkTowardsBall, WalkTowardsCentre,
+    WaitForBallMessage, WalkToKickOff, WalkTowardsBall, WalkTowardsCentre,
 };
 
 use super::states::State;
@@ -19,6 +19,7 @@ pub(crate) fn instances() -> Vec<Instance> {
         Instance::of::<SendCalibration>(State::SendCalibration),
         Instance::of::<Sensors>(State::Sensors),
         Instance::of::<Vision>(State::Vision),
+        Instance::of::<WalkToKickOff>(State::WalkToKickOff),
         Instance::of::<WaitForBallMessage>(State::WaitForBallMessage),
         Instance::of::<SearchBall>(State::SearchBall),
         Instance::of::<TurnAround>(State::TurnAround),

@@ -47,8 +47,16 @@ pub(crate) fn transitions(chart: &mut TypedChartBuilder) {
         State::END__of__region3__of__RobotController__ever____par__LedHandler__ever____par__MotionController__ever____par____open__initialize__then__active__close__,
         "[false]",
     );
-    chart.connect(State::START__of__region4, State::__open__initialize__then__active__close__, "");
-    chart.connect(State::__open__initialize__then__active__close__, State::END__of__region4, "[false]");
+    chart.connect(
+        State::START__of__region4__of__RobotController__ever____par__LedHandler__ever____par__MotionController__ever____par____open__initialize__then__active__close__,
+        State::__open__initialize__then__active__close__,
+        "",
+    );
+    chart.connect(
+        State::__open__initialize__then__active__close__,
+        State::END__of__region4__of__RobotController__ever____par__LedHandler__ever____par__MotionController__ever____par____open__initialize__then__active__close__,
+        "[false]",
+    );
     chart.connect(State::START__of__RobotController__ever__, State::RobotController, "");
     chart.connect(
         State::RobotController,
@@ -74,60 +82,82 @@ pub(crate) fn transitions(chart: &mut TypedChartBuilder) {
     chart.connect(State::SendCalibration, State::END__of__initialize, "");
     chart.connect(
         State::START__of__active,
-        State::Sensors__ever____par__Vision__ever____par__decision__ever__,
+        State::Sensors__ever____par__Vision__ever____par__WalkToKickOff__ever____par__decision__ever__,
         "",
     );
     chart.connect(
-        State::Sensors__ever____par__Vision__ever____par__decision__ever__,
+        State::Sensors__ever____par__Vision__ever____par__WalkToKickOff__ever____par__decision__ever__,
         State::END__of__active,
         "[false]",
     );
     chart.connect(
-        State::START__of__region1__of__Sensors__ever____par__Vision__ever____par__decision__ever__,
+        State::START__of__region1__of__Sensors__ever____par__Vision__ever____par__WalkToKickOff__ever____par__decision__ever__,
         State::Sensors__ever__,
         "",
     );
     chart.connect(
         State::Sensors__ever__,
-        State::END__of__region1__of__Sensors__ever____par__Vision__ever____par__decision__ever__,
+        State::END__of__region1__of__Sensors__ever____par__Vision__ever____par__WalkToKickOff__ever____par__decision__ever__,
         "[false]",
     );
     chart.connect(
-        State::START__of__region2__of__Sensors__ever____par__Vision__ever____par__decision__ever__,
+        State::START__of__region2__of__Sensors__ever____par__Vision__ever____par__WalkToKickOff__ever____par__decision__ever__,
         State::Vision__ever__,
         "",
     );
     chart.connect(
         State::Vision__ever__,
-        State::END__of__region2__of__Sensors__ever____par__Vision__ever____par__decision__ever__,
+        State::END__of__region2__of__Sensors__ever____par__Vision__ever____par__WalkToKickOff__ever____par__decision__ever__,
         "[false]",
     );
     chart.connect(
-        State::START__of__region3__of__Sensors__ever____par__Vision__ever____par__decision__ever__,
+        State::START__of__region3__of__Sensors__ever____par__Vision__ever____par__WalkToKickOff__ever____par__decision__ever__,
+        State::WalkToKickOff__ever__,
+        "",
+    );
+    chart.connect(
+        State::WalkToKickOff__ever__,
+        State::END__of__region3__of__Sensors__ever____par__Vision__ever____par__WalkToKickOff__ever____par__decision__ever__,
+        "[false]",
+    );
+    chart.connect(
+        State::START__of__region4__of__Sensors__ever____par__Vision__ever____par__WalkToKickOff__ever____par__decision__ever__,
         State::decision__ever__,
         "",
     );
     chart.connect(
         State::decision__ever__,
-        State::END__of__region3__of__Sensors__ever____par__Vision__ever____par__decision__ever__,
+        State::END__of__region4__of__Sensors__ever____par__Vision__ever____par__WalkToKickOff__ever____par__decision__ever__,
         "[false]",
     );
-    chart.connect(State::START__of__Sensors__ever__, State::Sensors, "[GameState.player_state == PLAYING]");
+    chart.connect(State::START__of__Sensors__ever__, State::Sensors, "[GameState.player_state != PENALIZED]");
     chart.guard(guards::from_START_to_Sensors);
     chart.connect(
         State::Sensors,
         State::Sensors,
-        "[sensors_timeout && GameState.player_state == PLAYING] / StartTimeout(sensors_timeout, 100ms)",
+        "[sensors_timeout && GameState.player_state != PENALIZED] / StartTimeout(sensors_timeout, 100ms)",
     );
     chart.guard(guards::from_Sensors_to_Sensors);
-    chart.connect(State::START__of__Vision__ever__, State::Vision, "[GameState.player_state == PLAYING]");
+    chart.connect(State::START__of__Vision__ever__, State::Vision, "[GameState.player_state != PENALIZED]");
     chart.guard(guards::from_START_to_Vision);
     chart.connect(
         State::Vision,
         State::Vision,
-        "[vision_timeout && GameState.player_state == PLAYING] / StartTimeout(vision_timeout, 100ms)",
+        "[vision_timeout && GameState.player_state != PENALIZED] / StartTimeout(vision_timeout, 100ms)",
     );
     chart.guard(guards::from_Vision_to_Vision);
+    chart.connect(
+        State::START__of__WalkToKickOff__ever__,
+        State::WalkToKickOff,
+        "[GameState.player_state == READY]",
+    );
+    chart.guard(guards::from_START_to_WalkToKickOff);
+    chart.connect(
+        State::WalkToKickOff,
+        State::WalkToKickOff,
+        "[place_timeout && GameState.player_state == READY] / StartTimeout(place_timeout, 100ms)",
+    );
+    chart.guard(guards::from_WalkToKickOff_to_WalkToKickOff);
     chart.connect(State::START__of__decision, State::WaitForBallMessage, "");
     chart.connect(State::WaitForBallMessage, State::__open__search__or__takeAction__close__, "");
     chart.connect(State::__open__search__or__takeAction__close__, State::END__of__decision, "");

@@ -4,8 +4,8 @@ use ::monas::generated::Instance;
 use ::monas_soccer::activities::{
     AlignWithBall, AssessAttack, BringBallToPass, BringBallToShoot, CoverGoal, LedHandler, LeftKick,
     LookAtGoal, MotionController, PassBall, RightKick, RobotController, SearchBall, SendCalibration, Sensors,
-    Stand, SupportMate, TrackBall, TurnAround, TurnToReport, Vision, WaitForBallMessage, WalkTowardsBall,
-    WalkTowardsCentre, WalkTowardsGoal,
+    Stand, SupportMate, TrackBall, TurnAround, TurnToReport, Vision, WaitForBallMessage, WalkToKickOff,
+    WalkTowardsBall, WalkTowardsCentre, WalkTowardsGoal,
 };
 
 use super::states::State;
@@ -20,6 +20,7 @@ pub(crate) fn instances() -> Vec<Instance> {
         Instance::of::<SendCalibration>(State::SendCalibration),
         Instance::of::<Sensors>(State::Sensors),
         Instance::of::<Vision>(State::Vision),
+        Instance::of::<WalkToKickOff>(State::WalkToKickOff),
         Instance::of::<WaitForBallMessage>(State::WaitForBallMessage),
         Instance::of::<SearchBall>(State::SearchBall),
         Instance::of::<AssessAttack>(State::AssessAttack__of__search),

@@ -39,13 +39,13 @@ pub enum State {
     /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/3/END`
     END__of__region3__of__RobotController__ever____par__LedHandler__ever____par__MotionController__ever____par____open__initialize__then__active__close__,
     /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4`
-    region4,
+    region4__of__RobotController__ever____par__LedHandler__ever____par__MotionController__ever____par____open__initialize__then__active__close__,
     /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/START`
-    START__of__region4,
+    START__of__region4__of__RobotController__ever____par__LedHandler__ever____par__MotionController__ever____par____open__initialize__then__active__close__,
     /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)`
     __open__initialize__then__active__close__,
     /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/END`
-    END__of__region4,
+    END__of__region4__of__RobotController__ever____par__LedHandler__ever____par__MotionController__ever____par____open__initialize__then__active__close__,
     /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/1/RobotController~/START`
     START__of__RobotController__ever__,
     /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/1/RobotController~/RobotController`
@@ -76,205 +76,217 @@ pub enum State {
     END__of__initialize,
     /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/START`
     START__of__active,
-    /// AND: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~`
-    Sensors__ever____par__Vision__ever____par__decision__ever__,
+    /// AND: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~`
+    Sensors__ever____par__Vision__ever____par__WalkToKickOff__ever____par__decision__ever__,
     /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/END`
     END__of__active,
-    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/1`
-    region1__of__Sensors__ever____par__Vision__ever____par__decision__ever__,
-    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/1/START`
-    START__of__region1__of__Sensors__ever____par__Vision__ever____par__decision__ever__,
-    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/1/Sensors~`
+    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/1`
+    region1__of__Sensors__ever____par__Vision__ever____par__WalkToKickOff__ever____par__decision__ever__,
+    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/1/START`
+    START__of__region1__of__Sensors__ever____par__Vision__ever____par__WalkToKickOff__ever____par__decision__ever__,
+    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/1/Sensors~`
     Sensors__ever__,
-    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/1/END`
-    END__of__region1__of__Sensors__ever____par__Vision__ever____par__decision__ever__,
-    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/2`
-    region2__of__Sensors__ever____par__Vision__ever____par__decision__ever__,
-    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/2/START`
-    START__of__region2__of__Sensors__ever____par__Vision__ever____par__decision__ever__,
-    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/2/Vision~`
+    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/1/END`
+    END__of__region1__of__Sensors__ever____par__Vision__ever____par__WalkToKickOff__ever____par__decision__ever__,
+    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/2`
+    region2__of__Sensors__ever____par__Vision__ever____par__WalkToKickOff__ever____par__decision__ever__,
+    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/2/START`
+    START__of__region2__of__Sensors__ever____par__Vision__ever____par__WalkToKickOff__ever____par__decision__ever__,
+    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/2/Vision~`
     Vision__ever__,
-    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/2/END`
-    END__of__region2__of__Sensors__ever____par__Vision__ever____par__decision__ever__,
-    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3`
-    region3__of__Sensors__ever____par__Vision__ever____par__decision__ever__,
-    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/START`
-    START__of__region3__of__Sensors__ever____par__Vision__ever____par__decision__ever__,
-    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~`
+    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/2/END`
+    END__of__region2__of__Sensors__ever____par__Vision__ever____par__WalkToKickOff__ever____par__decision__ever__,
+    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/3`
+    region3__of__Sensors__ever____par__Vision__ever____par__WalkToKickOff__ever____par__decision__ever__,
+    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/3/START`
+    START__of__region3__of__Sensors__ever____par__Vision__ever____par__WalkToKickOff__ever____par__decision__ever__,
+    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/3/WalkToKickOff~`
+    WalkToKickOff__ever__,
+    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/3/END`
+    END__of__region3__of__Sensors__ever____par__Vision__ever____par__WalkToKickOff__ever____par__decision__ever__,
+    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/4`
+    region4__of__Sensors__ever____par__Vision__ever____par__WalkToKickOff__ever____par__decision__ever__,
+    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/4/START`
+    START__of__region4__of__Sensors__ever____par__Vision__ever____par__WalkToKickOff__ever____par__decision__ever__,
+    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/4/decision~`
     decision__ever__,
-    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/END`
-    END__of__region3__of__Sensors__ever____par__Vision__ever____par__decision__ever__,
-    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/1/Sensors~/START`
+    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/4/END`
+    END__of__region4__of__Sensors__ever____par__Vision__ever____par__WalkToKickOff__ever____par__decision__ever__,
+    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/1/Sensors~/START`
     START__of__Sensors__ever__,
-    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/1/Sensors~/Sensors`
+    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/1/Sensors~/Sensors`
     Sensors,
-    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/2/Vision~/START`
+    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/2/Vision~/START`
     START__of__Vision__ever__,
-    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/2/Vision~/Vision`
+    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/2/Vision~/Vision`
     Vision,
-    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/START`
+    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/3/WalkToKickOff~/START`
+    START__of__WalkToKickOff__ever__,
+    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/3/WalkToKickOff~/WalkToKickOff`
+    WalkToKickOff,
+    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/4/decision~/START`
     START__of__decision__ever__,
-    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision`
+    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/4/decision~/decision`
     decision,
-    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/START`
+    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/4/decision~/decision/START`
     START__of__decision,
-    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/WaitForBallMessage`
+    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/4/decision~/decision/WaitForBallMessage`
     WaitForBallMessage,
-    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)`
+    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/4/decision~/decision/(search|takeAction)`
     __open__search__or__takeAction__close__,
-    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/END`
+    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/4/decision~/decision/END`
     END__of__decision,
-    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/START`
+    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/4/decision~/decision/(search|takeAction)/START`
     START__of____open__search__or__takeAction__close__,
-    /// CONDITION: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/CONDITION`
+    /// CONDITION: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/4/decision~/decision/(search|takeAction)/CONDITION`
     CONDITION__of____open__search__or__takeAction__close__,
-    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/search`
+    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/4/decision~/decision/(search|takeAction)/search`
     search,
-    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction`
+    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/4/decision~/decision/(search|takeAction)/takeAction`
     takeAction,
-    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/END`
+    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/4/decision~/decision/(search|takeAction)/END`
     END__of____open__search__or__takeAction__close__,
-    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/search/START`
+    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/4/decision~/decision/(search|takeAction)/search/START`
     START__of__search,
-    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/search/SearchBall`
+    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/4/decision~/decision/(search|takeAction)/search/SearchBall`
     SearchBall,
-    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/search/AssessAttack`
+    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/4/decision~/decision/(search|takeAction)/search/AssessAttack`
     AssessAttack__of__search,
-    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/search/[roam]`
+    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/4/decision~/decision/(search|takeAction)/search/[roam]`
     __opt__roam__end__,
-    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/search/END`
+    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/4/decision~/decision/(search|takeAction)/search/END`
     END__of__search,
-    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/search/[roam]/START`
+    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/4/decision~/decision/(search|takeAction)/search/[roam]/START`
     START__of____opt__roam__end__,
-    /// CONDITION: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/search/[roam]/CONDITION`
+    /// CONDITION: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/4/decision~/decision/(search|takeAction)/search/[roam]/CONDITION`
     CONDITION__of____opt__roam__end__,
-    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/search/[roam]/roam`
+    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/4/decision~/decision/(search|takeAction)/search/[roam]/roam`
     roam,
-    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/search/[roam]/roam/START`
+    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/4/decision~/decision/(search|takeAction)/search/[roam]/roam/START`
     START__of__roam,
-    /// CONDITION: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/search/[roam]/roam/CONDITION`
+    /// CONDITION: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/4/decision~/decision/(search|takeAction)/search/[roam]/roam/CONDITION`
     CONDITION__of__roam,
-    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/search/[roam]/roam/TurnAround`
+    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/4/decision~/decision/(search|takeAction)/search/[roam]/roam/TurnAround`
     TurnAround,
-    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/search/[roam]/roam/WalkTowardsCentre`
+    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/4/decision~/decision/(search|takeAction)/search/[roam]/roam/WalkTowardsCentre`
     WalkTowardsCentre,
-    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/search/[roam]/roam/TurnToReport`
+    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/4/decision~/decision/(search|takeAction)/search/[roam]/roam/TurnToReport`
     TurnToReport,
-    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/search/[roam]/roam/END`
+    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/4/decision~/decision/(search|takeAction)/search/[roam]/roam/END`
     END__of__roam,
-    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/search/[roam]/END`
+    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/4/decision~/decision/(search|takeAction)/search/[roam]/END`
     END__of____opt__roam__end__,
-    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/START`
+    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/4/decision~/decision/(search|takeAction)/takeAction/START`
     START__of__takeAction,
-    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(TrackBall|LookAtGoal)`
+    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/4/decision~/decision/(search|takeAction)/takeAction/(TrackBall|LookAtGoal)`
     __open__TrackBall__or__LookAtGoal__close__,
-    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/AssessAttack`
+    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/4/decision~/decision/(search|takeAction)/takeAction/AssessAttack`
     AssessAttack__of__takeAction,
-    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)`
+    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/4/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)`
     __open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
-    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/END`
+    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/4/decision~/decision/(search|takeAction)/takeAction/END`
     END__of__takeAction,
-    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(TrackBall|LookAtGoal)/START`
+    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/4/decision~/decision/(search|takeAction)/takeAction/(TrackBall|LookAtGoal)/START`
     START__of____open__TrackBall__or__LookAtGoal__close__,
-    /// CONDITION: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(TrackBall|LookAtGoal)/CONDITION`
+    /// CONDITION: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/4/decision~/decision/(search|takeAction)/takeAction/(TrackBall|LookAtGoal)/CONDITION`
     CONDITION__of____open__TrackBall__or__LookAtGoal__close__,
-    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(TrackBall|LookAtGoal)/TrackBall`
+    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/4/decision~/decision/(search|takeAction)/takeAction/(TrackBall|LookAtGoal)/TrackBall`
     TrackBall,
-    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(TrackBall|LookAtGoal)/LookAtGoal`
+    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/4/decision~/decision/(search|takeAction)/takeAction/(TrackBall|LookAtGoal)/LookAtGoal`
     LookAtGoal,
-    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(TrackBall|LookAtGoal)/END`
+    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/4/decision~/decision/(search|takeAction)/takeAction/(TrackBall|LookAtGoal)/END`
     END__of____open__TrackBall__or__LookAtGoal__close__,
-    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/START`
+    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/4/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/START`
     START__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
-    /// CONDITION: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/CONDITION`
+    /// CONDITION: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/4/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/CONDITION`
     CONDITION__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
-    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/WalkTowardsBall`
+    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/4/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/WalkTowardsBall`
     WalkTowardsBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
-    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/AlignWithBall`
+    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/4/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/AlignWithBall`
     AlignWithBall,
-    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/kickBall`
+    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/4/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/kickBall`
     kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
-    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/SupportMate`
+    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/4/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/SupportMate`
     SupportMate,
-    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/CoverGoal`
+    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/4/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/CoverGoal`
     CoverGoal,
-    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center`
+    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/4/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center`
     center,
-    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center_for`
+    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/4/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center_for`
     center_for,
-    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/END`
+    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/4/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/END`
     END__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
-    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/kickBall/START`
+    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/4/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/kickBall/START`
     START__of__kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
-    /// CONDITION: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/kickBall/CONDITION`
+    /// CONDITION: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/4/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/kickBall/CONDITION`
     CONDITION__of__kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
-    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/kickBall/LeftKick`
+    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/4/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/kickBall/LeftKick`
     LeftKick__of__kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
-    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/kickBall/RightKick`
+    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/4/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/kickBall/RightKick`
     RightKick__of__kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
-    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/kickBall/END`
+    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/4/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/kickBall/END`
     END__of__kickBall__of____open__WalkTowardsBall__or__AlignWithBall__or__kickBall__or__SupportMate__or__CoverGoal__or__center__or__center_for__close__,
-    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center/START`
+    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/4/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center/START`
     START__of__center,
-    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center/WalkTowardsBall`
+    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/4/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center/WalkTowardsBall`
     WalkTowardsBall__of__center,
-    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center/AssessAttack`
+    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/4/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center/AssessAttack`
     AssessAttack__of__center,
-    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center/[passBall]`
+    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/4/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center/[passBall]`
     __opt__passBall__end__,
-    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center/END`
+    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/4/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center/END`
     END__of__center,
-    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center/[passBall]/START`
+    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/4/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center/[passBall]/START`
     START__of____opt__passBall__end__,
-    /// CONDITION: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center/[passBall]/CONDITION`
+    /// CONDITION: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/4/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center/[passBall]/CONDITION`
     CONDITION__of____opt__passBall__end__,
-    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center/[passBall]/passBall`
+    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/4/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center/[passBall]/passBall`
     passBall,
-    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center/[passBall]/END`
+    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/4/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center/[passBall]/END`
     END__of____opt__passBall__end__,
-    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center_for/START`
+    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/4/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center_for/START`
     START__of__center_for,
-    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center_for/WalkTowardsGoal`
+    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/4/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center_for/WalkTowardsGoal`
     WalkTowardsGoal,
-    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center_for/[WalkTowardsBall.AssessAttack.[kickBall]]`
+    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/4/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center_for/[WalkTowardsBall.AssessAttack.[kickBall]]`
     __opt__WalkTowardsBall__then__AssessAttack__then____opt__kickBall__end____end__,
-    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center_for/END`
+    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/4/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center_for/END`
     END__of__center_for,
-    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center_for/[WalkTowardsBall.AssessAttack.[kickBall]]/START`
+    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/4/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center_for/[WalkTowardsBall.AssessAttack.[kickBall]]/START`
     START__of____opt__WalkTowardsBall__then__AssessAttack__then____opt__kickBall__end____end__,
-    /// CONDITION: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center_for/[WalkTowardsBall.AssessAttack.[kickBall]]/CONDITION`
+    /// CONDITION: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/4/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center_for/[WalkTowardsBall.AssessAttack.[kickBall]]/CONDITION`
     CONDITION__of____opt__WalkTowardsBall__then__AssessAttack__then____opt__kickBall__end____end__,
-    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center_for/[WalkTowardsBall.AssessAttack.[kickBall]]/WalkTowardsBall.AssessAttack.[kickBall]`
+    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/4/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center_for/[WalkTowardsBall.AssessAttack.[kickBall]]/WalkTowardsBall.AssessAttack.[kickBall]`
     WalkTowardsBall__then__AssessAttack__then____opt__kickBall__end__,
-    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center_for/[WalkTowardsBall.AssessAttack.[kickBall]]/WalkTowardsBall.AssessAttack.[kickBall]/START`
+    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/4/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center_for/[WalkTowardsBall.AssessAttack.[kickBall]]/WalkTowardsBall.AssessAttack.[kickBall]/START`
     START__of__WalkTowardsBall__then__AssessAttack__then____opt__kickBall__end__,
-    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center_for/[WalkTowardsBall.AssessAttack.[kickBall]]/WalkTowardsBall.AssessAttack.[kickBall]/WalkTowardsBall`
+    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/4/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center_for/[WalkTowardsBall.AssessAttack.[kickBall]]/WalkTowardsBall.AssessAttack.[kickBall]/WalkTowardsBall`
     WalkTowardsBall__of__WalkTowardsBall__then__AssessAttack__then____opt__kickBall__end__,
-    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center_for/[WalkTowardsBall.AssessAttack.[kickBall]]/WalkTowardsBall.AssessAttack.[kickBall]/AssessAttack`
+    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/4/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center_for/[WalkTowardsBall.AssessAttack.[kickBall]]/WalkTowardsBall.AssessAttack.[kickBall]/AssessAttack`
     AssessAttack__of__WalkTowardsBall__then__AssessAttack__then____opt__kickBall__end__,
-    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center_for/[WalkTowardsBall.AssessAttack.[kickBall]]/WalkTowardsBall.AssessAttack.[kickBall]/[kickBall]`
+    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/4/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center_for/[WalkTowardsBall.AssessAttack.[kickBall]]/WalkTowardsBall.AssessAttack.[kickBall]/[kickBall]`
     __opt__kickBall__end__,
-    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center_for/[WalkTowardsBall.AssessAttack.[kickBall]]/WalkTowardsBall.AssessAttack.[kickBall]/END`
+    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/4/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center_for/[WalkTowardsBall.AssessAttack.[kickBall]]/WalkTowardsBall.AssessAttack.[kickBall]/END`
     END__of__WalkTowardsBall__then__AssessAttack__then____opt__kickBall__end__,
-    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center_for/[WalkTowardsBall.AssessAttack.[kickBall]]/WalkTowardsBall.AssessAttack.[kickBall]/[kickBall]/START`
+    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/4/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center_for/[WalkTowardsBall.AssessAttack.[kickBall]]/WalkTowardsBall.AssessAttack.[kickBall]/[kickBall]/START`
     START__of____opt__kickBall__end__,
-    /// CONDITION: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center_for/[WalkTowardsBall.AssessAttack.[kickBall]]/WalkTowardsBall.AssessAttack.[kickBall]/[kickBall]/CONDITION`
+    /// CONDITION: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/4/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center_for/[WalkTowardsBall.AssessAttack.[kickBall]]/WalkTowardsBall.AssessAttack.[kickBall]/[kickBall]/CONDITION`
     CONDITION__of____opt__kickBall__end__,
-    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center_for/[WalkTowardsBall.AssessAttack.[kickBall]]/WalkTowardsBall.AssessAttack.[kickBall]/[kickBall]/kickBall`
+    /// OR: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/4/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center_for/[WalkTowardsBall.AssessAttack.[kickBall]]/WalkTowardsBall.AssessAttack.[kickBall]/[kickBall]/kickBall`
     kickBall__of____opt__kickBall__end__,
-    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center_for/[WalkTowardsBall.AssessAttack.[kickBall]]/WalkTowardsBall.AssessAttack.[kickBall]/[kickBall]/kickBall/START`
+    /// START: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/4/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center_for/[WalkTowardsBall.AssessAttack.[kickBall]]/WalkTowardsBall.AssessAttack.[kickBall]/[kickBall]/kickBall/START`
     START__of__kickBall__of____opt__kickBall__end__,
-    /// CONDITION: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center_for/[WalkTowardsBall.AssessAttack.[kickBall]]/WalkTowardsBall.AssessAttack.[kickBall]/[kickBall]/kickBall/CONDITION`
+    /// CONDITION: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/4/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center_for/[WalkTowardsBall.AssessAttack.[kickBall]]/WalkTowardsBall.AssessAttack.[kickBall]/[kickBall]/kickBall/CONDITION`
     CONDITION__of__kickBall__of____opt__kickBall__end__,
-    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center_for/[WalkTowardsBall.AssessAttack.[kickBall]]/WalkTowardsBall.AssessAttack.[kickBall]/[kickBall]/kickBall/LeftKick`
+    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/4/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center_for/[WalkTowardsBall.AssessAttack.[kickBall]]/WalkTowardsBall.AssessAttack.[kickBall]/[kickBall]/kickBall/LeftKick`
     LeftKick__of__kickBall__of____opt__kickBall__end__,
-    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center_for/[WalkTowardsBall.AssessAttack.[kickBall]]/WalkTowardsBall.AssessAttack.[kickBall]/[kickBall]/kickBall/RightKick`
+    /// BASIC: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/4/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center_for/[WalkTowardsBall.AssessAttack.[kickBall]]/WalkTowardsBall.AssessAttack.[kickBall]/[kickBall]/kickBall/RightKick`
     RightKick__of__kickBall__of____opt__kickBall__end__,
-    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center_for/[WalkTowardsBall.AssessAttack.[kickBall]]/WalkTowardsBall.AssessAttack.[kickBall]/[kickBall]/kickBall/END`
+    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/4/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center_for/[WalkTowardsBall.AssessAttack.[kickBall]]/WalkTowardsBall.AssessAttack.[kickBall]/[kickBall]/kickBall/END`
     END__of__kickBall__of____opt__kickBall__end__,
-    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center_for/[WalkTowardsBall.AssessAttack.[kickBall]]/WalkTowardsBall.AssessAttack.[kickBall]/[kickBall]/END`
+    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/4/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center_for/[WalkTowardsBall.AssessAttack.[kickBall]]/WalkTowardsBall.AssessAttack.[kickBall]/[kickBall]/END`
     END__of____opt__kickBall__end__,
-    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||decision~/3/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center_for/[WalkTowardsBall.AssessAttack.[kickBall]]/END`
+    /// END: `player/RobotController~||LedHandler~||MotionController~||(initialize.active)/4/(initialize.active)/active/Sensors~||Vision~||WalkToKickOff~||decision~/4/decision~/decision/(search|takeAction)/takeAction/(WalkTowardsBall|AlignWithBall|kickBall|SupportMate|CoverGoal|center|center_for)/center_for/[WalkTowardsBall.AssessAttack.[kickBall]]/END`
     END__of____opt__WalkTowardsBall__then__AssessAttack__then____opt__kickBall__end____end__,
 }
 

@@ -12,7 +12,7 @@ pub(crate) mod constants {
     /// `tolerance`
     pub(crate) const tolerance: f64 = 0.025;
     /// `nearer`
-    pub(crate) const nearer: f64 = 0.3;
+    pub(crate) const nearer: f64 = 0.1;
     /// `look`
     pub(crate) const look: f64 = 2.5;
     /// `wander`
@@ -68,10 +68,12 @@ pub(crate) mod timers {
     pub(crate) const sensors_timeout: Timer = Timer(3);
     /// `vision_timeout`
     pub(crate) const vision_timeout: Timer = Timer(4);
+    /// `place_timeout`
+    pub(crate) const place_timeout: Timer = Timer(5);
     /// `glance_timeout`
-    pub(crate) const glance_timeout: Timer = Timer(5);
+    pub(crate) const glance_timeout: Timer = Timer(6);
     /// `decision_timeout`
-    pub(crate) const decision_timeout: Timer = Timer(6);
+    pub(crate) const decision_timeout: Timer = Timer(7);
 }
 
 /// The values of enumerations.
@@ -81,6 +83,10 @@ pub(crate) mod values {
     pub(crate) const CENTER: i32 = 1;
     /// `AttackPart.CENTER_FOR`
     pub(crate) const CENTER_FOR: i32 = 2;
+    /// `PlayerState.PENALIZED`
+    pub(crate) const PENALIZED: i32 = 4;
     /// `PlayerState.PLAYING`
     pub(crate) const PLAYING: i32 = 3;
+    /// `PlayerState.READY`
+    pub(crate) const READY: i32 = 1;
 }

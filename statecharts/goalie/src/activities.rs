@@ -4,7 +4,7 @@ use ::monas::generated::Instance;
 use ::monas_soccer::activities::{
     KeepGoal, LedHandler, LeftDive, LeftFall, MotionController, ReturnToGoal, RightDive, RightFall,
     RobotController, SearchBall, SendCalibration, Sensors, Stand, StepAside, TrackBall, Vision,
-    WaitForBallMessage,
+    WaitForBallMessage, WalkToKickOff,
 };
 
 use super::states::State;
@@ -19,6 +19,7 @@ pub(crate) fn instances() -> Vec<Instance> {
         Instance::of::<SendCalibration>(State::SendCalibration),
         Instance::of::<Sensors>(State::Sensors),
         Instance::of::<Vision>(State::Vision),
+        Instance::of::<WalkToKickOff>(State::WalkToKickOff),
         Instance::of::<WaitForBallMessage>(State::WaitForBallMessage),
         Instance::of::<SearchBall>(State::SearchBall),
         Instance::of::<ReturnToGoal>(State::ReturnToGoal),

@@ -27,9 +27,12 @@ fn words(chart: &mut TypedChartBuilder) {
     chart.starts(timers::motion_timeout, "motion_timeout");
     chart.starts(timers::sensors_timeout, "sensors_timeout");
     chart.starts(timers::vision_timeout, "vision_timeout");
+    chart.starts(timers::place_timeout, "place_timeout");
     chart.starts(timers::decision_timeout, "decision_timeout");
     chart.calls(functions::abs, "abs");
+    chart.means("PlayerState", "PENALIZED", values::PENALIZED);
     chart.means("PlayerState", "PLAYING", values::PLAYING);
+    chart.means("PlayerState", "READY", values::READY);
     chart.constant("act_within", constants::act_within);
     chart.constant("fall_from", constants::fall_from);
     chart.constant("dive_from", constants::dive_from);
@@ -118,19 +121,29 @@ fn states(chart: &mut TypedChartBuilder) {
         "",
     );
     chart.add(
-        State::region4,
+        State::region4__of__RobotController__ever____par__LedHandler__ever____par__MotionController__ever____par____open__Stand__then__SendCalibration__then__active__close__,
         State::RobotController__ever____par__LedHandler__ever____par__MotionController__ever____par____open__Stand__then__SendCalibration__then__active__close__,
         NodeKind::Or,
         "",
     );
-    chart.add(State::START__of__region4, State::region4, NodeKind::Start, "");
+    chart.add(
+        State::START__of__region4__of__RobotController__ever____par__LedHandler__ever____par__MotionController__ever____par____open__Stand__then__SendCalibration__then__active__close__,
+        State::region4__of__RobotController__ever____par__LedHandler__ever____par__MotionController__ever____par____open__Stand__then__SendCalibration__then__active__close__,
+        NodeKind::Start,
+        "",
+    );
     chart.add(
         State::__open__Stand__then__SendCalibration__then__active__close__,
-        State::region4,
+        State::region4__of__RobotController__ever____par__LedHandler__ever____par__MotionController__ever____par____open__Stand__then__SendCalibration__then__active__close__,
         NodeKind::Or,
         "(Stand.SendCalibration.active)",
     );
-    chart.add(State::END__of__region4, State::region4, NodeKind::End, "");
+    chart.add(
+        State::END__of__region4__of__RobotController__ever____par__LedHandler__ever____par__MotionController__ever____par____open__Stand__then__SendCalibration__then__active__close__,
+        State::region4__of__RobotController__ever____par__LedHandler__ever____par__MotionController__ever____par____open__Stand__then__SendCalibration__then__active__close__,
+        NodeKind::End,
+        "",
+    );
     chart.add(State::START__of__RobotController__ever__, State::RobotController__ever__, NodeKind::Start, "");
     chart.add(State::RobotController, State::RobotController__ever__, NodeKind::Basic, "RobotController");
     chart.activity(State::RobotController, "RobotController");
@@ -179,81 +192,105 @@ fn states(chart: &mut TypedChartBuilder) {
     );
     chart.add(State::START__of__active, State::active, NodeKind::Start, "");
     chart.add(
-        State::Sensors__ever____par__Vision__ever____par__decision__ever__,
+        State::Sensors__ever____par__Vision__ever____par__WalkToKickOff__ever____par__decision__ever__,
         State::active,
         NodeKind::And,
-        "Sensors~||Vision~||decision~",
+        "Sensors~||Vision~||WalkToKickOff~||decision~",
     );
     chart.add(State::END__of__active, State::active, NodeKind::End, "");
     chart.add(
-        State::region1__of__Sensors__ever____par__Vision__ever____par__decision__ever__,
-        State::Sensors__ever____par__Vision__ever____par__decision__ever__,
+        State::region1__of__Sensors__ever____par__Vision__ever____par__WalkToKickOff__ever____par__decision__ever__,
+        State::Sensors__ever____par__Vision__ever____par__WalkToKickOff__ever____par__decision__ever__,
         NodeKind::Or,
         "",
     );
     chart.add(
-        State::START__of__region1__of__Sensors__ever____par__Vision__ever____par__decision__ever__,
-        State::region1__of__Sensors__ever____par__Vision__ever____par__decision__ever__,
+        State::START__of__region1__of__Sensors__ever____par__Vision__ever____par__WalkToKickOff__ever____par__decision__ever__,
+        State::region1__of__Sensors__ever____par__Vision__ever____par__WalkToKickOff__ever____par__decision__ever__,
         NodeKind::Start,
         "",
     );
     chart.add(
         State::Sensors__ever__,
-        State::region1__of__Sensors__ever____par__Vision__ever____par__decision__ever__,
+        State::region1__of__Sensors__ever____par__Vision__ever____par__WalkToKickOff__ever____par__decision__ever__,
         NodeKind::Or,
         "Sensors~",
     );
     chart.add(
-        State::END__of__region1__of__Sensors__ever____par__Vision__ever____par__decision__ever__,
-        State::region1__of__Sensors__ever____par__Vision__ever____par__decision__ever__,
+        State::END__of__region1__of__Sensors__ever____par__Vision__ever____par__WalkToKickOff__ever____par__decision__ever__,
+        State::region1__of__Sensors__ever____par__Vision__ever____par__WalkToKickOff__ever____par__decision__ever__,
         NodeKind::End,
         "",
     );
     chart.add(
-        State::region2__of__Sensors__ever____par__Vision__ever____par__decision__ever__,
-        State::Sensors__ever____par__Vision__ever____par__decision__ever__,
+        State::region2__of__Sensors__ever____par__Vision__ever____par__WalkToKickOff__ever____par__decision__ever__,
+        State::Sensors__ever____par__Vision__ever____par__WalkToKickOff__ever____par__decision__ever__,
         NodeKind::Or,
         "",
     );
     chart.add(
-        State::START__of__region2__of__Sensors__ever____par__Vision__ever____par__decision__ever__,
-        State::region2__of__Sensors__ever____par__Vision__ever____par__decision__ever__,
+        State::START__of__region2__of__Sensors__ever____par__Vision__ever____par__WalkToKickOff__ever____par__decision__ever__,
+        State::region2__of__Sensors__ever____par__Vision__ever____par__WalkToKickOff__ever____par__decision__ever__,
         NodeKind::Start,
         "",
     );
     chart.add(
         State::Vision__ever__,
-        State::region2__of__Sensors__ever____par__Vision__ever____par__decision__ever__,
+        State::region2__of__Sensors__ever____par__Vision__ever____par__WalkToKickOff__ever____par__decision__ever__,
         NodeKind::Or,
         "Vision~",
     );
     chart.add(
-        State::END__of__region2__of__Sensors__ever____par__Vision__ever____par__decision__ever__,
-        State::region2__of__Sensors__ever____par__Vision__ever____par__decision__ever__,
+        State::END__of__region2__of__Sensors__ever____par__Vision__ever____par__WalkToKickOff__ever____par__decision__ever__,
+        State::region2__of__Sensors__ever____par__Vision__ever____par__WalkToKickOff__ever____par__decision__ever__,
         NodeKind::End,
         "",
     );
     chart.add(
-        State::region3__of__Sensors__ever____par__Vision__ever____par__decision__ever__,
-        State::Sensors__ever____par__Vision__ever____par__decision__ever__,
+        State::region3__of__Sensors__ever____par__Vision__ever____par__WalkToKickOff__ever____par__decision__ever__,
+        State::Sensors__ever____par__Vision__ever____par__WalkToKickOff__ever____par__decision__ever__,
         NodeKind::Or,
         "",
     );
     chart.add(
-        State::START__of__region3__of__Sensors__ever____par__Vision__ever____par__decision__ever__,
-        State::region3__of__Sensors__ever____par__Vision__ever____par__decision__ever__,
+        State::START__of__region3__of__Sensors__ever____par__Vision__ever____par__WalkToKickOff__ever____par__decision__ever__,
+        State::region3__of__Sensors__ever____par__Vision__ever____par__WalkToKickOff__ever____par__decision__ever__,
+        NodeKind::Start,
+        "",
+    );
+    chart.add(
+        State::WalkToKickOff__ever__,
+        State::region3__of__Sensors__ever____par__Vision__ever____par__WalkToKickOff__ever____par__decision__ever__,
+        NodeKind::Or,
+        "WalkToKickOff~",
+    );
+    chart.add(
+        State::END__of__region3__of__Sensors__ever____par__Vision__ever____par__WalkToKickOff__ever____par__decision__ever__,
+        State::region3__of__Sensors__ever____par__Vision__ever____par__WalkToKickOff__ever____par__decision__ever__,
+        NodeKind::End,
+        "",
+    );
+    chart.add(
+        State::region4__of__Sensors__ever____par__Vision__ever____par__WalkToKickOff__ever____par__decision__ever__,
+        State::Sensors__ever____par__Vision__ever____par__WalkToKickOff__ever____par__decision__ever__,
+        NodeKind::Or,
+        "",
+    );
+    chart.add(
+        State::START__of__region4__of__Sensors__ever____par__Vision__ever____par__WalkToKickOff__ever____par__decision__ever__,
+        State::region4__of__Sensors__ever____par__Vision__ever____par__WalkToKickOff__ever____par__decision__ever__,
         NodeKind::Start,
         "",
     );
     chart.add(
         State::decision__ever__,
-        State::region3__of__Sensors__ever____par__Vision__ever____par__decision__ever__,
+        State::region4__of__Sensors__ever____par__Vision__ever____par__WalkToKickOff__ever____par__decision__ever__,
         NodeKind::Or,
         "decision~",
     );
     chart.add(
-        State::END__of__region3__of__Sensors__ever____par__Vision__ever____par__decision__ever__,
-        State::region3__of__Sensors__ever____par__Vision__ever____par__decision__ever__,
+        State::END__of__region4__of__Sensors__ever____par__Vision__ever____par__WalkToKickOff__ever____par__decision__ever__,
+        State::region4__of__Sensors__ever____par__Vision__ever____par__WalkToKickOff__ever____par__decision__ever__,
         NodeKind::End,
         "",
     );
@@ -263,6 +300,9 @@ fn states(chart: &mut TypedChartBuilder) {
     chart.add(State::START__of__Vision__ever__, State::Vision__ever__, NodeKind::Start, "");
     chart.add(State::Vision, State::Vision__ever__, NodeKind::Basic, "Vision");
     chart.activity(State::Vision, "Vision");
+    chart.add(State::START__of__WalkToKickOff__ever__, State::WalkToKickOff__ever__, NodeKind::Start, "");
+    chart.add(State::WalkToKickOff, State::WalkToKickOff__ever__, NodeKind::Basic, "WalkToKickOff");
+    chart.activity(State::WalkToKickOff, "WalkToKickOff");
     chart.add(State::START__of__decision__ever__, State::decision__ever__, NodeKind::Start, "");
     chart.add(State::decision, State::decision__ever__, NodeKind::Or, "decision");
     chart.add(State::START__of__decision, State::decision, NodeKind::Start, "");

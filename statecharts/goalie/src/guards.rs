@@ -2,7 +2,9 @@
 
 #![allow(non_snake_case)] // the names are those of states
 
-use ::monas::generated::{GuardInput, GuardResult, all, at_least, at_most, equal, given, holds, less, more};
+use ::monas::generated::{
+    GuardInput, GuardResult, all, at_least, at_most, differ, equal, given, holds, less, more,
+};
 
 use super::words::{constants, functions, messages, timers, values};
 
@@ -21,29 +23,42 @@ pub(crate) fn from_MotionController_to_MotionController(input: &GuardInput<'_>) 
     Ok(input.is_over(timers::motion_timeout))
 }
 
-/// From `START` in `Sensors~` to `Sensors`: `[GameState.player_state == PLAYING]`
+/// From `START` in `Sensors~` to `Sensors`: `[GameState.player_state != PENALIZED]`
 pub(crate) fn from_START_to_Sensors(input: &GuardInput<'_>) -> GuardResult {
-    equal(input.latest(messages::GAME_STATE)?.player_state, values::PLAYING)
+    differ(input.latest(messages::GAME_STATE)?.player_state, values::PENALIZED)
 }
 
-/// From `Sensors` to `Sensors`: `[sensors_timeout && GameState.player_state == PLAYING]`
+/// From `Sensors` to `Sensors`: `[sensors_timeout && GameState.player_state != PENALIZED]`
 pub(crate) fn from_Sensors_to_Sensors(input: &GuardInput<'_>) -> GuardResult {
     all!(
         input.is_over(timers::sensors_timeout),
-        equal(input.latest(messages::GAME_STATE)?.player_state, values::PLAYING)?,
+        differ(input.latest(messages::GAME_STATE)?.player_state, values::PENALIZED)?,
     )
 }
 
-/// From `START` in `Vision~` to `Vision`: `[GameState.player_state == PLAYING]`
+/// From `START` in `Vision~` to `Vision`: `[GameState.player_state != PENALIZED]`
 pub(crate) fn from_START_to_Vision(input: &GuardInput<'_>) -> GuardResult {
-    equal(input.latest(messages::GAME_STATE)?.player_state, values::PLAYING)
+    differ(input.latest(messages::GAME_STATE)?.player_state, values::PENALIZED)
 }
 
-/// From `Vision` to `Vision`: `[vision_timeout && GameState.player_state == PLAYING]`
+/// From `Vision` to `Vision`: `[vision_timeout && GameState.player_state != PENALIZED]`
 pub(crate) fn from_Vision_to_Vision(input: &GuardInput<'_>) -> GuardResult {
     all!(
         input.is_over(timers::vision_timeout),
-        equal(input.latest(messages::GAME_STATE)?.player_state, values::PLAYING)?,
+        differ(input.latest(messages::GAME_STATE)?.player_state, values::PENALIZED)?,
+    )
+}
+
+/// From `START` in `WalkToKickOff~` to `WalkToKickOff`: `[GameState.player_state == READY]`
+pub(crate) fn from_START_to_WalkToKickOff(input: &GuardInput<'_>) -> GuardResult {
+    equal(input.latest(messages::GAME_STATE)?.player_state, values::READY)
+}
+
+/// From `WalkToKickOff` to `WalkToKickOff`: `[place_timeout && GameState.player_state == READY]`
+pub(crate) fn from_WalkToKickOff_to_WalkToKickOff(input: &GuardInput<'_>) -> GuardResult {
+    all!(
+        input.is_over(timers::place_timeout),
+        equal(input.latest(messages::GAME_STATE)?.player_state, values::READY)?,
     )
 }
 

@@ -46,13 +46,19 @@ pub(crate) mod timers {
     pub(crate) const sensors_timeout: Timer = Timer(3);
     /// `vision_timeout`
     pub(crate) const vision_timeout: Timer = Timer(4);
+    /// `place_timeout`
+    pub(crate) const place_timeout: Timer = Timer(5);
     /// `decision_timeout`
-    pub(crate) const decision_timeout: Timer = Timer(5);
+    pub(crate) const decision_timeout: Timer = Timer(6);
 }
 
 /// The values of enumerations.
 #[allow(non_upper_case_globals, clippy::approx_constant)] // names and numbers as in the model
 pub(crate) mod values {
+    /// `PlayerState.PENALIZED`
+    pub(crate) const PENALIZED: i32 = 4;
     /// `PlayerState.PLAYING`
     pub(crate) const PLAYING: i32 = 3;
+    /// `PlayerState.READY`
+    pub(crate) const READY: i32 = 1;
 }

@@ -2,12 +2,15 @@
 //!
 //! `season row VARIANT SEED SECONDS` plays one match and prints its row, `season rows VARIANT 1-20
 //! SECONDS` several and their sums, `season count` with the arguments of `row` prints passes,
-//! kick-offs, crowding and the time in each state.
+//! kick-offs, crowding and the time in each state. `season poses VARIANT 1-20 SECONDS` prints how
+//! far the robots' poses are from the truth, and how long robots need that are carried away.
 
 use std::process::ExitCode;
 use std::time::Duration;
 
-use monas_tests::{MatchRow, SeasonTable, VARIANTS, Variant, play, root, season, short_rows};
+use monas_tests::{
+    MatchRow, SeasonTable, VARIANTS, Variant, kidnap, play, pose_errors, quantile, root, season, short_rows,
+};
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -16,9 +19,10 @@ fn main() -> ExitCode {
         ["--check"] => check(),
         ["rows", variant, seeds, seconds] => rows(variant, seeds, seconds),
         ["row", variant, seed, seconds] => row(variant, seed, seconds),
+        ["poses", variant, seeds, seconds] => poses(variant, seeds, seconds),
         ["count", variant, seed, seconds] => count(variant, seed, seconds),
         _ => {
-            Err("usage: season [--check | (row | count) VARIANT SEED SECONDS | rows VARIANT FROM-TO SECONDS]"
+            Err("usage: season [--check | (row | count) VARIANT SEED SECONDS | (rows | poses) VARIANT FROM-TO SECONDS]"
                 .into())
         }
     };
@@ -44,6 +48,30 @@ fn rows(variant: &str, seeds: &str, seconds: &str) -> Result<(), String> {
     println!("{}", MatchRow::HEADER);
     let table = SeasonTable::play(&[*variant], from..=to, length, |row| println!("{row}"))?;
     println!("{}", table.sums(variant));
+    Ok(())
+}
+
+fn poses(variant: &str, seeds: &str, seconds: &str) -> Result<(), String> {
+    let (from, to) = seeds.split_once('-').ok_or_else(|| format!("`{seeds}` are no seeds"))?;
+    let (_, from, length) = game(variant, from, seconds)?;
+    let (variant, to, _) = game(variant, to, seconds)?;
+    let (mut places, mut turns, mut recoveries, mut lost) = (Vec::new(), Vec::new(), Vec::new(), 0);
+    for seed in from..=to {
+        let errors = pose_errors(variant, seed, length)?;
+        places.extend(errors.places);
+        turns.extend(errors.turns);
+        let kidnapped = kidnap(variant, seed, length)?;
+        recoveries.extend(kidnapped.recoveries);
+        lost += kidnapped.lost;
+    }
+    let print = |what: &str, values: &[f64], unit: &str| {
+        let [half, most, nearly] = [0.5, 0.9, 0.95].map(|part| quantile(values, part).unwrap_or(f64::NAN));
+        println!("{what:<28} median {half:.2} {unit}, 90 % {most:.2} {unit}, 95 % {nearly:.2} {unit}");
+    };
+    print("error of the place", &places, "m");
+    print("error of the heading", &turns, "rad");
+    print("recovery after kidnapping", &recoveries, "s");
+    println!("{} of {} kidnapped robots were lost for 30 s", lost, recoveries.len() + lost);
     Ok(())
 }
 

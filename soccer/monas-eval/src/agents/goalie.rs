@@ -29,7 +29,7 @@ impl Activity for BehaviorGoalie {
 
     fn topics(&self) -> Topics {
         let topics = Topics::declared().reads(topics::BALL).reads(topics::GAME_STATE).reads(topics::POSE);
-        let topics = topics.reads(topics::MOTION).reads(topics::MOTION_STATE);
+        let topics = topics.reads(topics::ROBOTS).reads(topics::MOTION).reads(topics::MOTION_STATE);
         topics.publishes(topics::MOTION).publishes(topics::HEAD)
     }
 }

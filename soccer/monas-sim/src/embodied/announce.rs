@@ -3,20 +3,14 @@
 use monas_robot::{Announcement, Colour, GamePhase};
 
 use super::SharedWorld;
-use crate::{FieldSide, GameOrder, GameState, GoalColour, Pose, SimulatedWorld, TeamColour};
+use crate::{FieldSide, GameOrder, GameState, GoalColour, SimulatedWorld, TeamColour};
 
 /// The referee's current announcement to a robot.
 pub(super) fn announcement(ground: &SharedWorld, robot: usize) -> Option<Announcement> {
     let said = ground.world.announcement(robot).ok()?;
-    let placement = ground.placements.get(robot)?;
-    let own = in_frame_of_team(placement.pose, said.attacks);
     let field = ground.world.field();
     let of_field = Announcement {
         team_colour: team_colour(said.colour) as i32,
-        placements: placement.count,
-        placed_x: own.position.x,
-        placed_y: own.position.y,
-        placed_heading: own.heading,
         field_length: field.length,
         field_width: field.width,
         goal_width: field.goal_width,
@@ -25,10 +19,6 @@ pub(super) fn announcement(ground: &SharedWorld, robot: usize) -> Option<Announc
     if let Some(league) = &ground.league {
         return league.get(robot).map(|announced| Announcement {
             team_colour: of_field.team_colour,
-            placements: of_field.placements,
-            placed_x: of_field.placed_x,
-            placed_y: of_field.placed_y,
-            placed_heading: of_field.placed_heading,
             field_length: of_field.field_length,
             field_width: of_field.field_width,
             goal_width: of_field.goal_width,
@@ -78,14 +68,6 @@ pub(super) fn order(world: &SimulatedWorld, announcements: &[Announcement]) -> G
     order
 }
 
-/// Converts a pose to the frame of a team, with x towards the goal that it attacks.
-fn in_frame_of_team(pose: Pose, attacks: GoalColour) -> Pose {
-    match attacks == FieldSide::Right.goal_colour() {
-        true => pose,
-        false => Pose::new(0.0, 0.0, std::f64::consts::PI).compose(&pose),
-    }
-}
-
 /// Whether an announcement differs from the previous one, apart from its clocks.
 pub(super) fn is_news(now: &Announcement, before: &Announcement) -> bool {
     let timeless =
@@ -124,19 +106,5 @@ pub(super) fn team_colour(team: TeamColour) -> Colour {
     match team {
         TeamColour::Blue => Colour::Blue,
         TeamColour::Red => Colour::Red,
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::Vector;
-
-    #[test]
-    fn a_team_that_attacks_to_the_left_sees_the_field_rotated() {
-        let pose = in_frame_of_team(Pose::new(1.0, 2.0, 0.5), GoalColour::Blue);
-        assert!((pose.position - Vector::new(-1.0, -2.0)).norm() < 1e-12);
-        assert!((pose.heading - (0.5 - std::f64::consts::PI)).abs() < 1e-12);
-        assert_eq!(in_frame_of_team(pose, GoalColour::Yellow), pose);
     }
 }

@@ -11,7 +11,9 @@ use narukom::Timestamp;
 use super::image_camera::ImageCamera;
 use super::skill::SkillTrack;
 use super::{SharedField, announce};
-use crate::{BodyPhase, Command, Motion, Physics, STEP, Senses, Side, Sighting, SimulatedWorld, Velocity};
+use crate::{
+    BodyPhase, Command, LineFeature, Motion, Physics, STEP, Senses, Side, Sighting, SimulatedWorld, Velocity,
+};
 
 /// Interval at which an unchanged announcement is repeated, as by a game controller.
 const ANNOUNCE_EVERY: Duration = Duration::from_millis(500);
@@ -63,8 +65,8 @@ impl FieldBody {
         Some(announcement)
     }
 
-    fn feel(&self, now: Timestamp, on_field: bool, sensors: &mut monas_robot::Sensors) {
-        let Senses { odometry, buttons, .. } = &self.senses;
+    fn feel(&self, now: Timestamp, sensors: &mut monas_robot::Sensors) {
+        let Senses { odometry, buttons, is_lifted, .. } = &self.senses;
         let (skill_done, skill_result) = self.skill.done();
         *sensors = monas_robot::Sensors {
             measured_at: now.as_nanos(),
@@ -78,7 +80,7 @@ impl FieldBody {
             chest_button: buttons.chest,
             left_bumper: buttons.left_bumper,
             right_bumper: buttons.right_bumper,
-            posture: posture(self.senses.phase, on_field) as i32,
+            posture: posture(self.senses.phase, *is_lifted) as i32,
             skill_done,
             skill_result: skill_result as i32,
             battery: 1.0,
@@ -126,18 +128,17 @@ impl Robot for FieldBody {
     }
 
     fn sense(&mut self, now: Timestamp, percepts: &mut Percepts) -> Result<(), Error> {
-        let on_field = {
+        {
             let mut ground = self.pitch.lock();
             ground.world.sense(self.robot, &mut self.senses).map_err(refused)?;
             ground.air.receive(self.robot, now.as_nanos(), &mut percepts.heard);
-            ground.world.robots()[self.robot].on_field
-        };
+        }
         let was_busy = self.skill.motion().is_some();
         self.skill.observe(self.senses.phase);
         if self.rests || (was_busy && self.skill.motion().is_none()) {
             self.drive()?;
         }
-        self.feel(now, on_field, &mut percepts.sensors);
+        self.feel(now, &mut percepts.sensors);
         match &mut self.cameras {
             None => percepts.sightings = self.see(now),
             Some(cameras) if self.senses.new_picture => {
@@ -224,9 +225,9 @@ fn cycle(physics: &Physics) -> Duration {
     Duration::from_millis((steps * STEP * 1e3).round() as u64)
 }
 
-fn posture(phase: BodyPhase, on_field: bool) -> Posture {
+fn posture(phase: BodyPhase, is_lifted: bool) -> Posture {
     match phase {
-        _ if !on_field => Posture::Lifted,
+        _ if is_lifted => Posture::Lifted,
         BodyPhase::Standing => Posture::Standing,
         BodyPhase::Walking => Posture::Walking,
         BodyPhase::Kicking(_) | BodyPhase::SideFalling(_) | BodyPhase::Diving(_) | BodyPhase::Falling(_) => {
@@ -246,6 +247,14 @@ fn sighting(seen: &Sighting, objects: ObjectSet) -> monas_robot::Sighting {
             (post(*side), of_2010(announce::goal_colour(*goal)), percept)
         }
         Sighting::Robot { colour, percept } => (ObjectKind::Robot, announce::team_colour(*colour), percept),
+        Sighting::Line { feature, percept } => {
+            let kind = match feature {
+                LineFeature::Corner => ObjectKind::LineCorner,
+                LineFeature::Junction => ObjectKind::LineJunction,
+                LineFeature::CentreCircle => ObjectKind::CentreCircle,
+            };
+            (kind, monas_robot::Colour::White, percept)
+        }
     };
     monas_robot::Sighting {
         kind: kind as i32,

@@ -7,7 +7,7 @@ use crate::{Error, ErrorKind, EventKind, Offence};
 /// What a person decides. Robots are indices into those of the world.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RefereeCall {
-    /// READY: robots and ball are placed for a kick-off.
+    /// READY: robots walk to their places for a kick-off.
     Ready,
     /// SET, without waiting for its time.
     Set,

@@ -1,13 +1,18 @@
 //! A scripted team that knows the ground truth: a reference for the physics, far simpler than real
 //! players.
 
-use monas_sim::{BodyPhase, Command, Motion, RobotState, Side, SimulatedWorld, Vector};
+use monas_sim::{BodyPhase, Command, GameState, Motion, RobotState, Side, SimulatedWorld, Vector};
 
 /// The current command to a robot of a scripted team.
 pub(crate) fn command(world: &SimulatedWorld, robot: usize) -> Command {
     let me = world.robots()[robot];
     if me.phase.is_fallen() {
         return Command::new(Motion::StandUp);
+    }
+    if world.referee().state() != GameState::Playing {
+        // Goalies walk home; who else stands where it must not is placed by the referee.
+        let is_away = me.is_goalie() && (home(world, &me) - me.pose.position).norm() > 0.25;
+        return if is_away { keep_goal(world, &me) } else { Command::new(Motion::Stand) };
     }
     let goal = world.field().goal(world.referee().defends()[me.team].opposite());
     if me.is_goalie() {
@@ -29,9 +34,13 @@ fn keep_goal(world: &SimulatedWorld, me: &RobotState) -> Command {
             _ => Command::default(),
         };
     }
+    go(me, home(world, me), Vector::zeros())
+}
+
+/// The place of a goalie before its goal.
+fn home(world: &SimulatedWorld, me: &RobotState) -> Vector {
     let side = world.referee().defends()[me.team];
-    let home = world.field().goal(side) - Vector::new(side.sign() * 0.2, 0.0);
-    go(me, home, Vector::zeros())
+    world.field().goal(side) - Vector::new(side.sign() * 0.2, 0.0)
 }
 
 fn attack(world: &SimulatedWorld, me: &RobotState, goal: Vector) -> Command {
@@ -92,7 +101,7 @@ fn angle(angle: f64) -> f64 {
 
 /// Lets both teams (or only the first) play by the script until the match is over.
 pub(crate) fn play_match(world: &mut SimulatedWorld, teams: &[usize]) {
-    while world.referee().state() != monas_sim::GameState::Finished {
+    while world.referee().state() != GameState::Finished {
         for robot in 0..world.robots().len() {
             if world.steps().is_multiple_of(2) && teams.contains(&world.robots()[robot].team) {
                 let command = command(world, robot);

@@ -120,7 +120,7 @@ const SPEED: f64 = 0.3;
 /// ground, that it does not see the ball, and each second since it has reported.
 const DOWN: f64 = 1.0;
 const BLIND: f64 = 1.0;
-const OLD: f64 = 0.15;
+const OLD: f64 = 0.05;
 
 fn player(report: &TeamReport, ball: Point2<f64>) -> AttackPlayer {
     let place = Point2::new(report.x, report.y);

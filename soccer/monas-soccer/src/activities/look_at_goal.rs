@@ -11,28 +11,43 @@ use crate::functionality::field::Goal;
 use crate::functionality::head::{Gaze, HeadController};
 use crate::topics;
 
-/// Looks for a moment at the goal that is nearer to the direction of the ball. The body does not
-/// move.
+/// Looks for a moment at the goal that is nearer to the direction of the ball. A robot that does not
+/// know where that is looks to its sides instead, one after the other, past what lies between. The
+/// body does not move.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct LookAtGoal {
     head: HeadController,
     since: Option<Timestamp>,
+    /// The side of the last look to a side.
+    side: Option<f64>,
 }
 
 /// How long the look lasts: shorter than a request to walk holds.
 const LOOK: Duration = Duration::from_millis(400);
+/// How long the look to a side lasts: the head turns so far, and the ball is not yet forgotten.
+const LOOK_ASIDE: Duration = Duration::from_millis(700);
+/// Confidence of the pose below which a robot does not know where the goals are.
+const LOST: f64 = 0.5;
+/// The direction of a look to a side, and its height, radians.
+const ASIDE: Gaze = Gaze { yaw: 1.8, pitch: -0.1 };
 
 impl Activity for LookAtGoal {
     fn execute(&mut self, blackboard: &mut Blackboard) -> Result<Progress, BoxError> {
         let now = blackboard.now();
+        let begins = self.since.is_none();
         let looked = now.since(*self.since.get_or_insert(now));
-        let gaze = self.gaze(blackboard).filter(|_| looked < LOOK);
+        if begins {
+            let is_lost = blackboard.read(topics::POSE).is_some_and(|pose| pose.confidence < LOST);
+            self.side = is_lost.then(|| self.side.map_or(1.0, |side| -side));
+        }
+        let length = if self.side.is_some() { LOOK_ASIDE } else { LOOK };
+        let gaze = self.gaze(blackboard).filter(|_| looked < length);
         let Some(gaze) = gaze else {
             self.since = None;
             return Ok(Progress::Done);
         };
         request_gaze(blackboard, gaze)?;
-        Ok(Progress::after(LOOK.saturating_sub(looked)))
+        Ok(Progress::after(length.saturating_sub(looked)))
     }
 
     fn stop(&mut self, _: &mut Blackboard) {
@@ -50,6 +65,9 @@ impl LookAtGoal {
     fn gaze(&self, blackboard: &Blackboard) -> Option<Gaze> {
         let ground = ground(blackboard)?;
         let bearing = blackboard.read(topics::BALL)?.bearing;
+        if let Some(side) = self.side {
+            return Some(Gaze { yaw: ASIDE.yaw * side, ..ASIDE });
+        }
         let gazes = [Goal::Opponent, Goal::Own].map(|goal| {
             let goal_in_robot = ground.field_from_robot.inverse_transform_point(&ground.field.goal(goal));
             self.head.look_at(goal_in_robot)
@@ -74,12 +92,26 @@ mod tests {
             let game = GameState { field_length: 6.0, field_width: 4.0, ..GameState::default() };
             stage
                 .publish(topics::GAME_STATE, game)
-                .publish(topics::POSE, Pose { y: 1e-3, ..Pose::default() });
+                .publish(topics::POSE, Pose { y: 1e-3, confidence: 0.8, ..Pose::default() });
             stage.publish(topics::BALL, Ball { bearing, ..Ball::default() });
             let mut activity = LookAtGoal::default();
             assert!(!stage.run(&mut activity));
             assert!((stage.latest(topics::HEAD).unwrap().yaw - yaw).abs() < 0.01);
             assert_eq!(stage.latest(topics::MOTION), None);
+            assert!(stage.wait(LOOK).run(&mut activity));
+        }
+    }
+
+    #[test]
+    fn a_robot_that_is_lost_looks_to_one_side_and_then_to_the_other() {
+        let (mut stage, mut activity) = (ActivityFixture::new(), LookAtGoal::default());
+        let game = GameState { field_length: 6.0, field_width: 4.0, ..GameState::default() };
+        stage.publish(topics::GAME_STATE, game).publish(topics::BALL, Ball::default());
+        stage.publish(topics::POSE, Pose { confidence: 0.3, ..Pose::default() });
+        for yaw in [ASIDE.yaw, -ASIDE.yaw, ASIDE.yaw] {
+            assert!(!stage.run(&mut activity));
+            assert_eq!(stage.latest(topics::HEAD).unwrap().yaw, yaw);
+            assert!(!stage.wait(LOOK).run(&mut activity), "it takes longer");
             assert!(stage.wait(LOOK).run(&mut activity));
         }
     }

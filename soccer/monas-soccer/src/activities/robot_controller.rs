@@ -1,28 +1,33 @@
 //! The state of the game, from the referee and the chest button.
 
 use monas::{Activity, Blackboard, BoxError, Parameters, Progress, Topics};
-use monas_robot::{Announcement, topics as body};
+use monas_robot::{Announcement, Posture, topics as body};
 use narukom::{Header, PublisherId};
 
 use crate::functionality::field::FieldModel;
-use crate::functionality::game::GameTracker;
-use crate::{GameState, PlayerState, convert, topics};
+use crate::functionality::game::{GamePhase, GameTracker};
+use crate::functionality::placement::PlacementTracker;
+use crate::{GameState, Placement, PlayerState, convert, topics};
 
-/// Publishes the state of the game from the referee's announcements and presses of the chest
-/// button.
+/// Publishes the state of the game from the referee's announcements, presses of the chest button,
+/// and whether the robot was lifted and put down.
+/// The place for a kick-off follows from the number in the announcement.
 ///
 /// Parameters are rules of the league that the referee does not announce: `area_depth` and
-/// `area_width` (m), the size of the goal area. The defaults are those of 2010.
+/// `area_width` (m), the size of the goal area, and `circle_radius` (m) of the centre circle. The
+/// defaults are those of 2010.
 #[derive(Clone, Debug)]
 pub struct RobotController {
     area: (f64, f64),
+    circle_radius: f64,
     game: GameTracker,
     heard: Option<(PublisherId, u64)>,
     button: Button,
+    placements: PlacementTracker,
     said: Option<GameState>,
 }
 
-/// The chest button; only the rising edge counts.
+/// The chest button; only the rising edge counts. `seen_until` is the last reading of the sensors.
 #[derive(Clone, Copy, Debug, Default)]
 struct Button {
     seen_until: u64,
@@ -31,12 +36,14 @@ struct Button {
 
 impl Default for RobotController {
     fn default() -> RobotController {
-        let FieldModel { area_depth, area_width, .. } = FieldModel::LEAGUE_2010;
+        let FieldModel { area_depth, area_width, circle_radius, .. } = FieldModel::LEAGUE_2010;
         RobotController {
             area: (area_depth, area_width),
+            circle_radius,
             game: GameTracker::default(),
             heard: None,
             button: Button::default(),
+            placements: PlacementTracker::default(),
             said: None,
         }
     }
@@ -46,11 +53,12 @@ impl Activity for RobotController {
     fn configure(&mut self, parameters: &Parameters) {
         self.area.0 = parameters.number("area_depth").unwrap_or(self.area.0);
         self.area.1 = parameters.number("area_width").unwrap_or(self.area.1);
+        self.circle_radius = parameters.number("circle_radius").unwrap_or(self.circle_radius);
     }
 
     fn execute(&mut self, blackboard: &mut Blackboard) -> Result<Progress, BoxError> {
-        self.feel_button(blackboard);
         let announcement = blackboard.sample(body::ANNOUNCEMENT);
+        self.feel(blackboard, announcement.map(|sample| sample.message));
         if let Some(announcement) = announcement
             && self.is_news(announcement.header)
         {
@@ -77,7 +85,9 @@ impl RobotController {
         is_news
     }
 
-    fn feel_button(&mut self, blackboard: &Blackboard) {
+    fn feel(&mut self, blackboard: &Blackboard, said: Option<&Announcement>) {
+        let phase = said.map_or(GamePhase::Initial, convert::phase);
+        let is_penalized = said.is_some_and(|said| said.penalized);
         for sensors in blackboard.recent(body::SENSORS, std::time::Duration::MAX) {
             if sensors.measured_at <= self.button.seen_until {
                 continue;
@@ -85,15 +95,19 @@ impl RobotController {
             if sensors.chest_button && !self.button.pressed {
                 self.game.press_chest_button();
             }
+            self.placements.feel(sensors.posture() == Posture::Lifted, phase, is_penalized);
             self.button = Button { seen_until: sensors.measured_at, pressed: sensors.chest_button };
         }
     }
 
     fn game_state(&self, announcement: Option<&Announcement>) -> GameState {
         let player_state = PlayerState::from(self.game.state()).into();
+        let (by_hand, placement) = self.placements.placements();
         let Some(said) = announcement else {
             return GameState { player_state, ..GameState::default() };
         };
+        // A body that puts itself at a pose is not lifted.
+        let placement = if said.placements > 0 { Placement::KnownPose } else { placement.into() };
         GameState {
             player_state,
             team: said.team,
@@ -105,7 +119,8 @@ impl RobotController {
             secs_remaining: said.seconds_left,
             first_half: said.first_half,
             kick_off_own: said.kick_off,
-            placements: said.placements,
+            placements: said.placements + by_hand,
+            placement: placement.into(),
             placed_x: said.placed_x,
             placed_y: said.placed_y,
             placed_heading: said.placed_heading,
@@ -114,8 +129,11 @@ impl RobotController {
             goal_width: said.goal_width,
             area_depth: self.area.0,
             area_width: self.area.1,
+            circle_radius: self.circle_radius,
             set_play: said.set_play,
+            ..GameState::default()
         }
+        .with_place()
     }
 }
 
@@ -182,6 +200,24 @@ mod tests {
         activity.configure(&Parameters::new().with("area_depth", "0.8"));
         stage.publish(body::ANNOUNCEMENT, announced).run(&mut activity);
         assert_eq!(stage.latest(topics::GAME_STATE).unwrap().field().area_depth, 0.8);
+    }
+
+    #[test]
+    fn a_robot_that_is_put_down_knows_only_that() {
+        let (mut stage, mut activity) = (ActivityFixture::new(), RobotController::default());
+        stage.publish(body::ANNOUNCEMENT, announcement(monas_robot::GamePhase::Set, false));
+        for (measured_at, posture) in [(1, Posture::Lifted), (2, Posture::Lifted), (3, Posture::Standing)] {
+            let felt = monas_robot::Sensors { measured_at, posture: posture.into(), ..Default::default() };
+            stage.publish(body::SENSORS, felt);
+        }
+        stage.run(&mut activity);
+        let game = stage.latest(topics::GAME_STATE).unwrap();
+        assert_eq!((game.placements, game.placement()), (1, Placement::OwnHalf));
+        let itself =
+            Announcement { placements: 4, placed_x: 1.0, ..announcement(monas_robot::GamePhase::Set, false) };
+        stage.publish(body::ANNOUNCEMENT, itself).run(&mut activity);
+        let game = stage.latest(topics::GAME_STATE).unwrap();
+        assert_eq!((game.placements, game.placement(), game.placed_x), (5, Placement::KnownPose, 1.0));
     }
 
     #[test]

@@ -1,26 +1,40 @@
 //! Supports the team mate that goes to the ball.
 
-use monas::{Activity, Blackboard, BoxError, Progress, Topics};
+use monas::{Activity, Blackboard, BoxError, Parameters, Progress, Topics};
 use nalgebra::Point2;
 
 use super::motion_requests::{request_stand, request_walk};
 use super::shot::{RobotAndField, ground, others};
 use crate::Ball;
 use crate::functionality::avoidance::{avoid, keep_out};
-use crate::functionality::support::support_place;
+use crate::functionality::support::{AHEAD, support_place};
 use crate::functionality::walk::{Walk, stride_to, turn_to};
 use crate::topics;
 
 /// Walks to a place ahead of the ball and to its side, and stays there facing the ball. Stands
 /// still while the pose is unknown.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct SupportMate;
+///
+/// Parameter `ahead` (m): how far before the ball that place is.
+#[derive(Clone, Copy, Debug)]
+pub struct SupportMate {
+    ahead: f64,
+}
+
+impl Default for SupportMate {
+    fn default() -> SupportMate {
+        SupportMate { ahead: AHEAD }
+    }
+}
 
 impl Activity for SupportMate {
+    fn configure(&mut self, parameters: &Parameters) {
+        self.ahead = parameters.number("ahead").unwrap_or(self.ahead);
+    }
+
     fn execute(&mut self, blackboard: &mut Blackboard) -> Result<Progress, BoxError> {
         wait_at(blackboard, |ground, ball| {
             let here = Point2::from(ground.field_from_robot.translation.vector);
-            support_place(&ground.field, ball, here)
+            support_place(&ground.field, ball, here, self.ahead)
         })
     }
 
@@ -70,7 +84,7 @@ mod tests {
     fn it_stands_while_its_pose_is_unknown() {
         let mut stage = ActivityFixture::new();
         stage.publish(topics::BALL, Ball { x: 1.0, distance: 1.0, ..Ball::default() });
-        assert!(stage.run(&mut SupportMate));
+        assert!(stage.run(&mut SupportMate::default()));
         assert_eq!(stage.latest(topics::MOTION).unwrap().kind(), MotionKind::Stand);
     }
 
@@ -82,7 +96,7 @@ mod tests {
             let ball =
                 Ball { x, y, distance: libm::hypot(x, y), bearing: libm::atan2(y, x), ..Ball::default() };
             stage.publish(topics::GAME_STATE, game).publish(topics::POSE, pose).publish(topics::BALL, ball);
-            assert!(stage.run(&mut SupportMate));
+            assert!(stage.run(&mut SupportMate::default()));
             stage.latest(topics::MOTION).unwrap()
         };
         assert!(walk(Pose { x: -1.0, y: 0.85, ..Pose::default() }, (1.0, -0.85)).vx > 0.2);

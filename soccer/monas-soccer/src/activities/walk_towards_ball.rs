@@ -4,21 +4,30 @@ use monas::{Activity, Blackboard, BoxError, Parameters, Progress, Topics};
 use nalgebra::Point2;
 
 use super::motion_requests::request_walk;
-use super::shot::{ground, others, target};
+use super::shot::{RobotAndField, ground, others, target};
 use crate::functionality::approach::Approach;
 use crate::functionality::avoidance::keep_out;
-use crate::topics;
+use crate::functionality::interception::meeting_place;
+use crate::{Ball, topics};
 
 /// Walks behind the ball, so that it lies between the robot and the opponents' goal, avoiding other
 /// robots and the own goal area.
 ///
 /// Parameters (m), which depend on the size of the robot: `stand_off`, the distance from the ball
 /// at which the path ends; `circle`, the radius of the circle on which the robot walks round the
-/// ball; `face_target`, the distance from the end at which it faces the target.
+/// ball; `face_target`, the distance from the end at which it faces the target. Parameter
+/// `foresight` (s): how far it looks ahead to walk to where it meets a rolling ball; by default not
+/// at all.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct WalkTowardsBall {
     approach: Approach,
+    foresight: f64,
 }
+
+/// The speed at which a robot comes nearer to a place, m/s: its way is not straight.
+const PROGRESS: f64 = 0.2;
+/// The deceleration of a rolling ball, m/s².
+const ROLLING_DECELERATION: f64 = 0.3;
 
 impl Activity for WalkTowardsBall {
     fn configure(&mut self, parameters: &Parameters) {
@@ -30,6 +39,7 @@ impl Activity for WalkTowardsBall {
         length("stand_off", &mut self.approach.stand_off);
         length("circle", &mut self.approach.circle);
         length("face_target", &mut self.approach.face_target);
+        self.foresight = parameters.number("foresight").unwrap_or(self.foresight);
     }
 
     fn execute(&mut self, blackboard: &mut Blackboard) -> Result<Progress, BoxError> {
@@ -37,7 +47,7 @@ impl Activity for WalkTowardsBall {
         let obstacles: Vec<Point2<f64>> = others(blackboard).map(|robot| robot.position()).collect();
         let ground = ground(blackboard);
         let target = target(blackboard, &ball, ground.as_ref());
-        let walk = self.approach.walk(ball.position(), target, &obstacles);
+        let walk = self.approach.walk(self.place(&ball, ground.as_ref()), target, &obstacles);
         let walk = ground.map_or(walk, |ground| keep_out(walk, &ground.field, &ground.field_from_robot));
         request_walk(blackboard, walk)?;
         Ok(Progress::Done)
@@ -49,13 +59,29 @@ impl Activity for WalkTowardsBall {
     }
 }
 
+impl WalkTowardsBall {
+    /// Where the robot meets the ball, on the field, in the robot's frame.
+    fn place(&self, ball: &Ball, ground: Option<&RobotAndField>) -> Point2<f64> {
+        if self.foresight <= 0.0 {
+            return ball.position();
+        }
+        let (position, velocity) = (ball.position(), ball.velocity());
+        let place = meeting_place(position, velocity, ROLLING_DECELERATION, PROGRESS, self.foresight);
+        let Some(RobotAndField { field, field_from_robot }) = ground else { return place };
+        let (end, side) = (field.length / 2.0, field.width / 2.0);
+        let there = field_from_robot * place;
+        let there = Point2::new(there.x.clamp(-end, end), there.y.clamp(-side, side));
+        field_from_robot.inverse_transform_point(&there)
+    }
+}
+
 monas::activity!(WalkTowardsBall);
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::activities::activity_fixture::ActivityFixture;
-    use crate::{Ball, GameState, MotionRequest, OtherRobot, Pose, Robots};
+    use crate::{GameState, MotionRequest, OtherRobot, Pose, Robots};
 
     fn run(ball: (f64, f64), pose: Option<Pose>, robots: &[OtherRobot]) -> MotionRequest {
         let (mut stage, mut activity) = (ActivityFixture::new(), WalkTowardsBall::default());
@@ -110,6 +136,20 @@ mod tests {
         let facing_own_goal = Pose { heading: std::f64::consts::PI, ..Pose::default() };
         let walk = run((1.0, 0.0), Some(facing_own_goal), &[]);
         assert!(walk.wz.abs() > 0.3, "{walk:?}");
+    }
+
+    #[test]
+    fn with_foresight_it_walks_to_where_it_meets_a_rolling_ball() {
+        let turn = |foresight| {
+            let (mut stage, mut activity) = (ActivityFixture::new(), WalkTowardsBall::default());
+            activity.configure(&Parameters::new().with("foresight", foresight));
+            let ball = Ball { x: 1.5, distance: 1.5, vy: 1.5, speed: 1.5, ..Ball::default() };
+            stage.publish(topics::BALL, ball);
+            assert!(stage.run(&mut activity));
+            stage.latest(topics::MOTION).unwrap().wz
+        };
+        assert!(turn("0").abs() < 1e-9);
+        assert!(turn("3") > 1.0, "it rolls to the left: {}", turn("3"));
     }
 
     #[test]

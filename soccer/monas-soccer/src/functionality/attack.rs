@@ -29,8 +29,9 @@ const SHOT: f64 = 1.0;
 /// By how much an opponent must be nearer to the ball than the team to have it, metres: reports of
 /// mates that walk to the ball are old.
 const HAS: f64 = 0.1;
-/// Distance from the goal beyond which no shot is expected to score, metres.
-const SHOT_LENGTH: f64 = 2.8;
+/// Distance from the goal beyond which no shot is expected to score, metres: of a hundred shots from
+/// 2 m and more a goalie lets one in.
+const SHOT_LENGTH: f64 = 2.2;
 /// Prediction time for a rolling ball, seconds.
 const FORESIGHT: f64 = 0.4;
 /// Way that turning by a radian costs, metres.
@@ -134,11 +135,18 @@ pub fn evaluate(scene: &AttackSituation<'_>) -> AttackState {
     let Some((center, center_for)) = parts(scene).filter(|_| !is_kept_out) else { return alone };
     let pays = pass_pays(scene, center_for.place);
     let is_passed = center.since_pass < PASSED;
+    // At the ball, with the goal covered, it shoots as it would alone.
+    let is_covered = scene.at_foot && faces_goal(scene) && !path_is_clear(scene);
+    // At the ball, facing a partner that no pass can reach, it does not wait.
+    let is_blocked =
+        scene.at_foot && faces(scene, center_for.place) && !pass_is_open(scene, center_for.place);
     let (part, mate) = match (std::ptr::eq(center, &scene.own), std::ptr::eq(center_for, &scene.own)) {
         // The part of the center ends with its pass.
         (true, _) if is_passed => (None, None),
         _ if !is_passed && !pays => (None, None),
+        (true, _) if is_blocked => (None, None),
         (true, _) => (Some(AttackRole::Center), Some(center_for.place)),
+        (_, true) if is_passed && is_covered => (None, None),
         (_, true) => (Some(AttackRole::CenterFor), Some(center.place)),
         _ => (None, None),
     };
@@ -222,8 +230,12 @@ fn pass_pays(scene: &AttackSituation<'_>, receiver: Point2<f64>) -> bool {
 const ASIDE: f64 = 0.8;
 
 fn path_is_clear(scene: &AttackSituation<'_>) -> bool {
-    let target = shot_target(&scene.field, scene.ball, scene.opponents);
-    faces(scene, target) && is_free(scene, target)
+    faces_goal(scene) && is_free(scene, shot_target(&scene.field, scene.ball, scene.opponents))
+}
+
+/// Whether the player stands at the ball so that a kick goes to the least covered part of the goal.
+fn faces_goal(scene: &AttackSituation<'_>) -> bool {
+    faces(scene, shot_target(&scene.field, scene.ball, scene.opponents))
 }
 
 /// Whether the player stands at the ball so that a kick goes to the target.
@@ -366,9 +378,34 @@ mod tests {
         let part =
             |ball: Point2<f64>, mate| evaluate(&AttackSituation { ball, ..scene(own, &[mate], &[]) }).part;
         assert_eq!(part(Point2::origin(), mate), Some(AttackRole::Center));
-        assert_eq!(part(Point2::new(0.5, 0.0), mate), None, "the goal is near enough");
+        assert_eq!(part(Point2::new(0.9, 0.0), mate), None, "the goal is near enough");
         assert_eq!(part(Point2::new(-2.7, 0.0), mate), None, "no field player may enter the own area");
         assert_eq!(part(Point2::origin(), player(-1.0, 1.5)), None, "the mate is behind the ball");
+    }
+
+    #[test]
+    fn at_a_covered_goal_the_receiver_acts_as_it_would_alone() {
+        let passer = AttackPlayer { since_pass: 2.0, ..player(-1.0, 0.0) };
+        let part = |opponents: &[Point2<f64>]| {
+            evaluate(&AttackSituation { at_foot: true, ..scene(player(-0.15, 0.0), &[passer], opponents) })
+                .part
+        };
+        assert_eq!(part(&[]), Some(AttackRole::CenterFor));
+        assert_eq!(part(&[Point2::new(0.5, 0.0)]), None);
+    }
+
+    #[test]
+    fn at_the_ball_a_pass_that_is_not_open_is_not_waited_for() {
+        let center = AttackPlayer { heading: 0.5, ..player(-0.15, -0.05) };
+        let part = |at_foot, center, opponents: &[Point2<f64>]| {
+            evaluate(&AttackSituation { at_foot, ..scene(center, &[player(1.5, 0.8)], opponents) }).part
+        };
+        let between = [Point2::new(0.8, 0.3)];
+        assert_eq!(part(true, center, &[]), Some(AttackRole::Center));
+        assert_eq!(part(true, center, &between), None);
+        assert_eq!(part(false, center, &between), Some(AttackRole::Center), "it may open until then");
+        let turning = AttackPlayer { heading: 0.0, ..center };
+        assert_eq!(part(true, turning, &between), Some(AttackRole::Center));
     }
 
     #[test]

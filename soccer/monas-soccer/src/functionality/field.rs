@@ -16,6 +16,8 @@ pub struct FieldModel {
     pub area_depth: f64,
     /// A goal's area along the goal line, metres.
     pub area_width: f64,
+    /// Radius of the centre circle, metres.
+    pub circle_radius: f64,
 }
 
 /// One of the two goals.
@@ -28,9 +30,16 @@ pub enum Goal {
 }
 
 impl FieldModel {
-    /// The field of the league in 2010: 6 m by 4 m, goals of 1.4 m, areas of 0.6 m by 2.2 m.
-    pub const LEAGUE_2010: FieldModel =
-        FieldModel { length: 6.0, width: 4.0, goal_width: 1.4, area_depth: 0.6, area_width: 2.2 };
+    /// The field of the league in 2010: 6 m by 4 m, goals of 1.4 m, areas of 0.6 m by 2.2 m, a
+    /// circle of 0.6 m.
+    pub const LEAGUE_2010: FieldModel = FieldModel {
+        length: 6.0,
+        width: 4.0,
+        goal_width: 1.4,
+        area_depth: 0.6,
+        area_width: 2.2,
+        circle_radius: 0.6,
+    };
 
     /// The middle of a goal.
     pub fn goal(&self, goal: Goal) -> Point2<f64> {

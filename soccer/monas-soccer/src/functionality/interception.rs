@@ -1,4 +1,4 @@
-//! When and where a rolling ball crosses the robot's lateral axis.
+//! When and where a rolling ball crosses the robot's lateral axis, and where a robot meets it.
 
 use nalgebra::{Point2, Vector2};
 
@@ -32,6 +32,36 @@ pub fn crossing(position: Point2<f64>, velocity: Vector2<f64>, deceleration: f64
     (time.is_finite() && y.is_finite()).then_some(Crossing { time, y })
 }
 
+/// Speed from which on a ball rolls, m/s: a slower one may be noise.
+const ROLLS: f64 = 0.7;
+/// Interval of the search for the place at which a ball is met, seconds.
+const INTERVAL: f64 = 0.1;
+
+/// Where a robot that walks with `walk` m/s first meets a ball that rolls, in the robot's frame;
+/// where the ball stops, or is after `foresight` seconds, if it is not met before. A ball that
+/// hardly rolls is met where it is.
+///
+/// The ball rolls straight and decelerates by `deceleration` m/s².
+pub fn meeting_place(
+    position: Point2<f64>,
+    velocity: Vector2<f64>,
+    deceleration: f64,
+    walk: f64,
+    foresight: f64,
+) -> Point2<f64> {
+    let speed = velocity.norm();
+    if speed < ROLLS {
+        return position;
+    }
+    let last = if deceleration > 0.0 { foresight.min(speed / deceleration) } else { foresight };
+    let at = |time: f64| position + velocity * (time - deceleration * time * time / (2.0 * speed));
+    let mut time = 0.0;
+    while time < last && at(time).coords.norm() > walk * time {
+        time += INTERVAL;
+    }
+    at(time.min(last))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -48,6 +78,16 @@ mod tests {
         let late = crossing(Point2::new(1.5, 0.0), Vector2::new(-1.0, 0.0), 0.25).unwrap();
         assert!((late.time - 2.0).abs() < 1e-12, "1.5 = t - t²/8 at t = 2: {late:?}");
         assert_eq!(crossing(Point2::new(2.1, 0.0), Vector2::new(-1.0, 0.0), 0.25), None);
+    }
+
+    #[test]
+    fn a_ball_is_met_where_robot_and_ball_come_at_the_same_time_or_where_it_stops() {
+        let met = |velocity, foresight| meeting_place(Point2::new(2.0, -2.0), velocity, 0.0, 1.0, foresight);
+        assert!((met(Vector2::new(0.0, 1.0), 9.0) - Point2::new(2.0, 0.0)).norm() < 0.11, "after 2 s");
+        assert_eq!(met(Vector2::new(0.0, 1.0), 1.0), Point2::new(2.0, -1.0), "it looks no farther ahead");
+        assert_eq!(met(Vector2::new(0.0, 0.2), 9.0), Point2::new(2.0, -2.0), "it hardly rolls");
+        let stopped = meeting_place(Point2::new(1.0, 0.0), Vector2::new(1.0, 0.0), 0.5, 0.1, 9.0);
+        assert!((stopped - Point2::new(2.0, 0.0)).norm() < 1e-9, "v²/2a from where it is: {stopped}");
     }
 
     #[test]

@@ -1,0 +1,237 @@
+//! One estimate of the pose of the robot, from odometry and landmarks.
+//!
+//! An extended Kalman filter over the pose with known landmarks and, where a landmark has several
+//! places, the most likely of them (Thrun, Burgard, Fox, *Probabilistic Robotics*, 2005, tables 7.2
+//! and 7.3).
+
+use std::f64::consts::PI;
+
+use nalgebra::{Isometry2, Matrix2, Matrix2x3, Matrix3, Matrix3x2, Point2, Vector2, Vector3};
+
+use super::field::FieldModel;
+use super::geometry::{heading, pose, wrap};
+use super::landmarks::{Landmark, LandmarkPlaces, LandmarkSighting};
+
+/// Noise of the robot's measurements.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct LocalisationModel {
+    /// Drift of the odometry: standard deviation in metres after one metre. It grows with the
+    /// square root of the distance.
+    pub drift: f64,
+    /// Drift of the heading: standard deviation in radians after turning one radian, and the same
+    /// for each metre walked.
+    pub turn_drift: f64,
+    /// Standard deviation of the distance of a post, relative to the distance.
+    pub distance_noise: f64,
+    /// Standard deviation of a measured bearing, radians.
+    pub bearing_noise: f64,
+    /// Standard deviation of the measured elevation of a place on the ground, radians: errors of
+    /// its distance grow with the distance.
+    pub elevation_noise: f64,
+    /// Height of the camera above the ground, metres.
+    pub eye_height: f64,
+}
+
+impl Default for LocalisationModel {
+    fn default() -> LocalisationModel {
+        LocalisationModel {
+            drift: 0.1,
+            turn_drift: 0.15,
+            distance_noise: 0.1,
+            bearing_noise: 0.025,
+            elevation_noise: 0.015,
+            eye_height: 0.5,
+        }
+    }
+}
+
+impl LocalisationModel {
+    /// Standard deviation of the distance of a landmark, metres.
+    pub(super) fn distance_deviation(&self, landmark: Landmark, distance: f64) -> f64 {
+        match landmark {
+            Landmark::Post(..) => self.distance_noise * distance + 0.02,
+            // A place on the ground at distance d is seen at the elevation atan(h/d).
+            Landmark::Corner | Landmark::Junction | Landmark::CentreCircle => {
+                let height = self.eye_height;
+                self.elevation_noise * (distance * distance + height * height) / height + 0.03
+            }
+        }
+    }
+}
+
+/// A pose and how certain it is.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct PoseEstimate {
+    /// The pose in the field frame.
+    pub field_from_robot: Isometry2<f64>,
+    /// Standard deviation of the position on either axis, metres.
+    pub place_deviation: f64,
+    /// Standard deviation of the heading, radians.
+    pub turn_deviation: f64,
+}
+
+/// The filter. [Advanced](PoseFilter::advance) by odometry, [corrected](PoseFilter::correct) by
+/// landmarks.
+#[derive(Clone, Debug)]
+pub(super) struct PoseFilter {
+    field_from_robot: Isometry2<f64>,
+    /// Of x, y and heading.
+    covariance: Matrix3<f64>,
+    misfits: u32,
+}
+
+/// The square of the Mahalanobis distance beyond which a landmark does not match: 99.9 % of correct
+/// ones are below (χ², 2 degrees of freedom).
+const GATE: f64 = 13.8;
+/// The same distance by which the best place of a line must match better than the next.
+const AMBIGUITY: f64 = 4.0;
+/// Number of consecutive mismatches after which the filter increases its uncertainty.
+const DOUBT: u32 = 8;
+/// Unmodelled change between two sightings, metres and radians; prevents overconfidence.
+const UNMODELLED: (f64, f64) = (0.01, 0.005);
+
+impl PoseFilter {
+    pub(super) fn new(start: &PoseEstimate) -> PoseFilter {
+        let place = start.place_deviation * start.place_deviation;
+        let turn = start.turn_deviation * start.turn_deviation;
+        PoseFilter {
+            field_from_robot: start.field_from_robot,
+            covariance: Matrix3::from_diagonal(&Vector3::new(place, place, turn)),
+            misfits: 0,
+        }
+    }
+
+    pub(super) fn field_from_robot(&self) -> &Isometry2<f64> {
+        &self.field_from_robot
+    }
+
+    /// Part of the sightings that match, of the last ones, from 1 to 0: less the nearer the filter
+    /// is to doubting its pose.
+    pub(super) fn trust(&self) -> f64 {
+        1.0 - f64::from(self.misfits) / f64::from(DOUBT)
+    }
+
+    /// The variance of the position, square metres.
+    pub(super) fn place_variance(&self) -> f64 {
+        (self.covariance[(0, 0)] + self.covariance[(1, 1)]).max(0.0)
+    }
+
+    /// Moves the robot to `old_from_new`, its new pose in its old frame.
+    pub(super) fn advance(&mut self, model: &LocalisationModel, old_from_new: &Isometry2<f64>) {
+        let step = self.field_from_robot.transform_vector(&old_from_new.translation.vector);
+        #[rustfmt::skip]
+        let jacobian = Matrix3::new(
+            1.0, 0.0, -step.y,
+            0.0, 1.0, step.x,
+            0.0, 0.0, 1.0,
+        );
+        let (way, turned) = (step.norm(), heading(old_from_new).abs());
+        let place = model.drift * model.drift * way;
+        let turn = model.turn_drift * model.turn_drift * (turned + way);
+        self.covariance = jacobian * self.covariance * jacobian.transpose();
+        self.covariance += Matrix3::from_diagonal(&Vector3::new(place, place, turn));
+        self.field_from_robot *= old_from_new;
+    }
+
+    /// Adds uncertainty of `place` metres and `turn` radians (standard deviations).
+    pub(super) fn disturb(&mut self, place: f64, turn: f64) {
+        self.covariance += Matrix3::from_diagonal(&Vector3::new(place * place, place * place, turn * turn));
+        self.covariance[(2, 2)] = self.covariance[(2, 2)].min(PI * PI);
+    }
+
+    /// Corrects the pose with a sighting, and returns how likely it was: 1 for what an exact filter
+    /// expects, near 0 for what does not match. A landmark that matches no place does not change
+    /// the pose, and neither does a place of the lines that matches two of them.
+    pub(super) fn correct(
+        &mut self,
+        model: &LocalisationModel,
+        field: &FieldModel,
+        seen: &LandmarkSighting,
+    ) -> f64 {
+        self.disturb(UNMODELLED.0, UNMODELLED.1);
+        let places = LandmarkPlaces::new(seen.landmark, field);
+        let (mut best, mut next): (Option<LandmarkMatch>, f64) = (None, f64::INFINITY);
+        for place in places.as_slice() {
+            let Some(fit) = self.fit(model, *place, seen) else { continue };
+            match &best {
+                Some(known) if known.mismatch <= fit.mismatch => next = next.min(fit.mismatch),
+                _ => {
+                    next = next.min(best.map_or(f64::INFINITY, |known| known.mismatch));
+                    best = Some(fit);
+                }
+            }
+        }
+        let is_line = !matches!(seen.landmark, Landmark::Post(..));
+        match best {
+            Some(fit) if fit.mismatch <= GATE => {
+                if !(is_line && next < fit.mismatch + AMBIGUITY) {
+                    self.apply(&fit);
+                }
+                fit.likelihood
+            }
+            _ => {
+                self.misfit();
+                0.0
+            }
+        }
+    }
+
+    /// The match of a sighting with a landmark; none if the robot would stand on it.
+    fn fit(
+        &self,
+        model: &LocalisationModel,
+        place: Point2<f64>,
+        seen: &LandmarkSighting,
+    ) -> Option<LandmarkMatch> {
+        let offset = place - Point2::from(self.field_from_robot.translation.vector);
+        let distance = offset.norm();
+        if distance < 0.05 {
+            return None;
+        }
+        let bearing = libm::atan2(offset.y, offset.x) - heading(&self.field_from_robot);
+        let innovation = Vector2::new(seen.distance - distance, wrap(seen.bearing - bearing));
+        let (x, y) = (offset.x / distance, offset.y / distance);
+        #[rustfmt::skip]
+        let jacobian = Matrix2x3::new(
+            -x,            -y,           0.0,
+            y / distance, -x / distance, -1.0,
+        );
+        let far = model.distance_deviation(seen.landmark, distance);
+        let aside = model.bearing_noise;
+        let noise = Matrix2::new(far * far, 0.0, 0.0, aside * aside);
+        let spread = jacobian * self.covariance * jacobian.transpose() + noise;
+        let inverse = spread.try_inverse()?;
+        let mismatch = (innovation.transpose() * inverse * innovation).x;
+        let sharpness = (noise.determinant() / spread.determinant()).max(0.0).sqrt();
+        let likelihood = sharpness * libm::exp(-mismatch / 2.0);
+        let gain = self.covariance * jacobian.transpose() * inverse;
+        Some(LandmarkMatch { innovation, jacobian, gain, mismatch, likelihood })
+    }
+
+    fn apply(&mut self, fit: &LandmarkMatch) {
+        let change = fit.gain * fit.innovation;
+        let place = self.field_from_robot.translation.vector + change.fixed_rows::<2>(0);
+        let turned = heading(&self.field_from_robot) + change.z;
+        self.field_from_robot = pose(place.x, place.y, turned);
+        let covariance = (Matrix3::identity() - fit.gain * fit.jacobian) * self.covariance;
+        self.covariance = (covariance + covariance.transpose()) / 2.0;
+        self.misfits = 0;
+    }
+
+    fn misfit(&mut self) {
+        self.misfits += 1;
+        if self.misfits >= DOUBT {
+            self.misfits = 0;
+            self.disturb(0.5, 0.5);
+        }
+    }
+}
+
+/// The match of a sighting with a landmark, and the resulting correction.
+struct LandmarkMatch {
+    innovation: Vector2<f64>,
+    jacobian: Matrix2x3<f64>,
+    gain: Matrix3x2<f64>,
+    mismatch: f64,
+    likelihood: f64,
+}

@@ -1,0 +1,33 @@
+//! The robots of a match know where they are, and find themselves after they were carried away.
+
+#![allow(clippy::unwrap_used)] // tests may panic
+
+use std::time::Duration;
+
+use monas_tests::{MATCH, kidnap, pose_errors, quantile};
+
+#[test]
+fn poses_are_near_the_truth_through_kick_offs_and_half_time() {
+    // The second half begins after 300 s.
+    let errors = pose_errors(&MATCH, 1, Duration::from_secs(340)).unwrap();
+    assert!(errors.places.len() > 5_000, "{} poses", errors.places.len());
+    let [place, turn] = [&errors.places, &errors.turns].map(|errors| quantile(errors, 0.5).unwrap());
+    assert!(place < 0.1 && turn < 0.1, "median error {place} m, {turn} rad");
+    let [place, turn] = [&errors.places, &errors.turns].map(|errors| quantile(errors, 0.95).unwrap());
+    assert!(place < 0.25 && turn < 0.25, "95 % of the errors are below {place} m, {turn} rad");
+}
+
+#[test]
+fn nine_of_ten_robots_find_themselves_within_ten_seconds_after_they_were_carried_away() {
+    let (mut recoveries, mut lost) = (Vec::new(), 0);
+    for seed in 1..=2 {
+        let result = kidnap(&MATCH, seed, Duration::from_secs(240)).unwrap();
+        recoveries.extend(result.recoveries);
+        lost += result.lost;
+    }
+    assert!(recoveries.len() >= 25, "{} kidnappings", recoveries.len());
+    // Robots that stay lost count as those that need longest.
+    recoveries.extend(vec![30.0; lost]);
+    let [half, most] = [0.5, 0.9].map(|part| quantile(&recoveries, part).unwrap());
+    assert!(half < 5.0 && most < 10.0, "median {half} s, 90 % within {most} s, {lost} lost");
+}
