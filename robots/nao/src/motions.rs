@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 
-use monas_config::poses::{self, Pose};
+use monas_config::poses::{self, JointPose};
 use monas_robot::{Error, ErrorKind, FallDetector, Skill};
 use nalgebra::Isometry3;
 use yase::{Diagnostic, Source};
@@ -27,11 +27,11 @@ pub(crate) const STAND_UP: &str = "stand_up";
 /// The special actions of a body.
 #[derive(Clone, Debug)]
 pub(crate) struct SpecialActions {
-    kick: Arc<[Pose]>,
-    fall: Arc<[Pose]>,
-    dive: Arc<[Pose]>,
-    stand_up: Arc<[Pose]>,
-    sit_down: Arc<[Pose]>,
+    kick: Arc<[JointPose]>,
+    fall: Arc<[JointPose]>,
+    dive: Arc<[JointPose]>,
+    stand_up: Arc<[JointPose]>,
+    sit_down: Arc<[JointPose]>,
 }
 
 impl SpecialActions {
@@ -74,7 +74,9 @@ impl SpecialActions {
     }
 }
 
-fn checked((poses, diagnostics): (Option<Vec<Pose>>, Vec<Diagnostic>)) -> Result<Arc<[Pose]>, Error> {
+fn checked(
+    (poses, diagnostics): (Option<Vec<JointPose>>, Vec<Diagnostic>),
+) -> Result<Arc<[JointPose]>, Error> {
     let message = || diagnostics.iter().find(|found| found.is_error()).map(ToString::to_string);
     poses.map(Arc::from).ok_or_else(|| Error::new(ErrorKind::Configuration, message().unwrap_or_default()))
 }
@@ -133,7 +135,7 @@ pub(crate) fn stand() -> JointAngles {
 
 impl Motion {
     /// A motion through poses, or through their mirror images.
-    fn through(poses: &[Pose], is_mirrored: bool, end: MotionEnd, from: JointAngles) -> Motion {
+    fn through(poses: &[JointPose], is_mirrored: bool, end: MotionEnd, from: JointAngles) -> Motion {
         let (mut angles, mut moves, mut stiffness) = (from, [false; JOINTS], None);
         let frames = poses.iter().map(|pose| {
             for &(joint, angle) in &pose.angles {
@@ -152,7 +154,7 @@ impl Motion {
     pub(crate) fn stand(from: JointAngles, seconds: f64) -> Motion {
         let body = NaoJoint::LShoulderPitch as usize..JOINTS;
         let angles = body.zip(stand().into_iter().skip(NaoJoint::LShoulderPitch as usize)).collect();
-        Motion::through(&[Pose { seconds, stiffness: None, angles }], false, MotionEnd::AtLastPose, from)
+        Motion::through(&[JointPose { seconds, stiffness: None, angles }], false, MotionEnd::AtLastPose, from)
     }
 
     /// Advances by one cycle and sets the joints that it moves. Returns whether it is over.
@@ -268,7 +270,7 @@ mod tests {
     fn joints_that_a_pose_does_not_name_keep_their_angle() {
         let pose = |seconds, stiffness, angles: &[(&str, f64)]| {
             let angles = angles.iter().map(|&(name, angle)| (joint(name), angle)).collect();
-            Pose { seconds, stiffness, angles }
+            JointPose { seconds, stiffness, angles }
         };
         let poses = [
             pose(0.5, None, &[("LElbowYaw", 1.0), ("HeadYaw", -0.4)]),

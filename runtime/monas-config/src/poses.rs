@@ -15,7 +15,7 @@
 //!
 //! ```
 //! use std::time::Duration;
-//! use monas_config::poses::{self, Pose};
+//! use monas_config::poses::{self, JointPose};
 //! use monas_robot::{Anatomy, Joint, Limits};
 //!
 //! let joint = |name| {
@@ -26,7 +26,7 @@
 //! let head = Anatomy { joints, ..Anatomy::new("head", Duration::from_millis(10)) };
 //! let listing = "<?xml version=\"1.0\" ?>\n<pose HeadYaw=0.876 HeadPitch=1.324 />\n<pose HeadYaw=0.227 HeadPitch=0.912 />\n";
 //! let (found, diagnostics) = poses::read(&yase::Source::new("nod.xml", listing), &head);
-//! let pose = |yaw, pitch| Pose { seconds: 1.0, stiffness: None, angles: vec![(0, yaw), (1, pitch)] };
+//! let pose = |yaw, pitch| JointPose { seconds: 1.0, stiffness: None, angles: vec![(0, yaw), (1, pitch)] };
 //! assert_eq!((found, diagnostics), (Some(vec![pose(0.876, 1.324), pose(0.227, 0.912)]), vec![]));
 //! ```
 
@@ -43,7 +43,7 @@ const LONGEST: f64 = 60.0;
 
 /// A pose of a sequence.
 #[derive(Clone, PartialEq, Debug)]
-pub struct Pose {
+pub struct JointPose {
     /// How long the way to it takes, s.
     pub seconds: f64,
     /// The stiffness of all joints on the way, 0 to 1, if it is given.
@@ -67,7 +67,7 @@ pub fn grammar(anatomy: &Anatomy) -> Grammar {
 
 /// Reads a file, in XML or TOML, with its diagnostics. There are no poses if one of these is an
 /// error.
-pub fn load(path: &Path, anatomy: &Anatomy) -> (Option<Vec<Pose>>, Vec<Diagnostic>) {
+pub fn load(path: &Path, anatomy: &Anatomy) -> (Option<Vec<JointPose>>, Vec<Diagnostic>) {
     match paths::read(path) {
         Ok(source) => read(&source, anatomy),
         Err(diagnostic) => (None, vec![*diagnostic]),
@@ -75,7 +75,7 @@ pub fn load(path: &Path, anatomy: &Anatomy) -> (Option<Vec<Pose>>, Vec<Diagnosti
 }
 
 /// As [`load`], from a text in memory.
-pub fn read(source: &Arc<Source>, anatomy: &Anatomy) -> (Option<Vec<Pose>>, Vec<Diagnostic>) {
+pub fn read(source: &Arc<Source>, anatomy: &Anatomy) -> (Option<Vec<JointPose>>, Vec<Diagnostic>) {
     let grammar = grammar(anatomy);
     let (roots, found) = grammar.read(source);
     let mut diagnostics: Vec<Diagnostic> = found.into_iter().map(with_units).collect();
@@ -90,7 +90,7 @@ pub fn read(source: &Arc<Source>, anatomy: &Anatomy) -> (Option<Vec<Pose>>, Vec<
     if diagnostics.iter().any(Diagnostic::is_error) {
         return (None, diagnostics);
     }
-    let poses: Vec<Pose> = elements.iter().map(|element| pose(element, &grammar, anatomy)).collect();
+    let poses: Vec<JointPose> = elements.iter().map(|element| pose(element, &grammar, anatomy)).collect();
     diagnostics.extend(too_fast(&elements, &poses, &grammar, anatomy));
     (Some(poses), diagnostics)
 }
@@ -103,10 +103,10 @@ fn with_units(diagnostic: Diagnostic) -> Diagnostic {
     }
 }
 
-fn pose(element: &Element, grammar: &Grammar, anatomy: &Anatomy) -> Pose {
+fn pose(element: &Element, grammar: &Grammar, anatomy: &Anatomy) -> JointPose {
     let values = Values::of(element, grammar);
     let joints = anatomy.joints.iter().enumerate();
-    Pose {
+    JointPose {
         seconds: values.number("duration").unwrap_or_default(),
         stiffness: values.number("stiffness"),
         angles: joints.filter_map(|(index, joint)| Some((index, values.number(joint.name)?))).collect(),
@@ -115,7 +115,12 @@ fn pose(element: &Element, grammar: &Grammar, anatomy: &Anatomy) -> Pose {
 
 /// Warns of joints that have to turn faster than they can. Where a joint is before the first pose
 /// that names it is not known.
-fn too_fast(elements: &[&Element], poses: &[Pose], grammar: &Grammar, anatomy: &Anatomy) -> Vec<Diagnostic> {
+fn too_fast(
+    elements: &[&Element],
+    poses: &[JointPose],
+    grammar: &Grammar,
+    anatomy: &Anatomy,
+) -> Vec<Diagnostic> {
     let mut angles = vec![None; anatomy.joints.len()];
     let mut diagnostics = Vec::new();
     for (element, pose) in elements.iter().zip(poses) {

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::time::Duration;
 
 use monas_config::XmlConfig;
-use monas_config::poses::{self, Pose};
+use monas_config::poses::{self, JointPose};
 use monas_robot::{Anatomy, Joint, Limits};
 use proptest::prelude::*;
 use yase::{Diagnostic, Source};
@@ -20,7 +20,7 @@ fn anatomy() -> Anatomy {
     Anatomy { joints, joint_speeds: vec![7.0, 6.4], ..Anatomy::new("knee", Duration::from_millis(12)) }
 }
 
-fn read(name: &str, text: &str) -> (Option<Vec<Pose>>, Vec<Diagnostic>) {
+fn read(name: &str, text: &str) -> (Option<Vec<JointPose>>, Vec<Diagnostic>) {
     poses::read(&Source::new(name, text), &anatomy())
 }
 
@@ -30,9 +30,9 @@ const POSES: &str = "<poses>\n  <pose duration=\"0.5\" LKneePitch=\"1\" HeadPitc
 #[test]
 fn a_sequence_is_read_from_xml_and_from_toml() {
     let expected = vec![
-        Pose { seconds: 0.5, stiffness: None, angles: vec![(0, -0.25), (1, 1.0)] },
-        Pose { seconds: 1.0, stiffness: Some(0.4), angles: vec![] },
-        Pose { seconds: 0.3, stiffness: None, angles: vec![(1, 2.0)] },
+        JointPose { seconds: 0.5, stiffness: None, angles: vec![(0, -0.25), (1, 1.0)] },
+        JointPose { seconds: 1.0, stiffness: Some(0.4), angles: vec![] },
+        JointPose { seconds: 0.3, stiffness: None, angles: vec![(1, 2.0)] },
     ];
     assert_eq!(read("kick.xml", POSES), (Some(expected.clone()), vec![]));
     let toml = "[[pose]]\nduration = 0.5\nLKneePitch = 1.0\nHeadPitch = -0.25\n\
@@ -46,7 +46,7 @@ fn what_the_store_of_the_thesis_writes_is_read() {
     for angle in [0.25, -0.5] {
         store.set_attributes("pose", &BTreeMap::from([("HeadPitch".to_owned(), angle)]), true).unwrap();
     }
-    let pose = |angle| Pose { seconds: 1.0, stiffness: None, angles: vec![(0, angle)] };
+    let pose = |angle| JointPose { seconds: 1.0, stiffness: None, angles: vec![(0, angle)] };
     assert_eq!(read("nod.xml", store.text()), (Some(vec![pose(0.25), pose(-0.5)]), vec![]));
     // And the store reads what is in a file with all attributes.
     let poses = XmlConfig::from_text("kick.xml", POSES).all_attributes::<f64>("pose").unwrap();
