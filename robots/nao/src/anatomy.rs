@@ -66,7 +66,8 @@ const PITCH: [f64; 3] = [0.0, 1.0, 0.0];
 const YAW: [f64; 3] = [0.0, 0.0, 1.0];
 const NONE: [f64; 3] = [0.0, 0.0, 0.0];
 
-/// The greatest speeds of the motors with their gears, rad/s.
+/// The greatest speeds of the motors with their gears, rad/s, as the description of the Nao V5 for
+/// ROS has them.
 const ARM: f64 = 8.26797;
 const ARM_ROLL: f64 = 7.19407;
 const WRIST: f64 = 24.6229;
@@ -77,8 +78,8 @@ const LEG_ROLL: f64 = 4.16174;
 /// A row of [`TABLE`].
 type JointRow = (&'static str, f64, f64, f64, Option<NaoJoint>, [f64; 3], [f64; 3]);
 
-/// Name, least and greatest angle, greatest speed, carrying joint, offset and axis of each joint. The joint of the
-/// left hip turns the right hip too, which a tree does not express: see
+/// Name, least and greatest angle, greatest speed, carrying joint, offset and axis of each joint.
+/// The joint of the left hip turns the right hip too, which a tree does not express: see
 /// [`kinematics`](crate::kinematics).
 #[rustfmt::skip]
 const TABLE: [JointRow; JOINTS] = {

@@ -287,7 +287,7 @@ fn joints_pass_through_the_poses_of_a_file_and_the_skill_has_a_result() {
         let felt = &trial.percepts.sensors;
         assert_eq!((felt.skill_done, felt.skill_result()), (1, SkillResult::Performed));
         assert_eq!(trial.posture(), Posture::Standing);
-        // The legs had no part in it, and the head obeys its commands again.
+        // The legs had no part in it, and the head follows its commands again.
         assert!((trial.pose().position - before.position).norm() < 1e-6);
         trial.run(0.5, command);
         assert!((trial.percepts.sensors.head_yaw + 0.3).abs() < 1e-3, "{:?}", trial.percepts.sensors);
