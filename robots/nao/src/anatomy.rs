@@ -68,12 +68,12 @@ const NONE: [f64; 3] = [0.0, 0.0, 0.0];
 
 /// The greatest speeds of the motors with their gears, rad/s, as the description of the Nao V5 for
 /// ROS has them.
-const ARM: f64 = 8.26797;
-const ARM_ROLL: f64 = 7.19407;
+const ARM: f64 = 8.267_97;
+const ARM_ROLL: f64 = 7.194_07;
 const WRIST: f64 = 24.6229;
 const FINGERS: f64 = 8.33;
-const LEG: f64 = 6.40239;
-const LEG_ROLL: f64 = 4.16174;
+const LEG: f64 = 6.402_39;
+const LEG_ROLL: f64 = 4.161_74;
 
 /// A row of [`TABLE`].
 type JointRow = (&'static str, f64, f64, f64, Option<NaoJoint>, [f64; 3], [f64; 3]);
