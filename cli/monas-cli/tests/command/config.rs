@@ -290,22 +290,6 @@ fn what_a_body_cannot_do_is_said_with_the_activities_that_rely_on_it() {
     let alone = monas(&["config", "check", &at(folder.path(), "goalie.xml")]);
     let blind = "body `nao`: the robot sees nothing: its cameras deliver images, with `vision=\"images\"`; this concerns `Vision` of Goalie";
     assert!(alone.err.contains(blind), "{}", alone.err);
-    // Files of poses are checked before a run.
-    let (kick, dive) = (folder.path().join("kick.xml"), folder.path().join("dive.toml"));
-    fs::write(kick, "<poses>\n  <pose LKneePich=\"1\"/>\n</poses>\n").expect("the folder takes files");
-    fs::write(dive, "[[pose]]\nLHipRoll = 0.1\n[[pose]]\nduration = 0.1\nLHipRoll = 0.6\n")
-        .expect("the folder takes files");
-    let acting = with_body("kick=\"kick.xml\" dive=\"dive.toml\" fall=\"kik.xml\"");
-    fs::write(folder.path().join("acting.xml"), acting).expect("the folder takes files");
-    let acting = monas(&["config", "check", &at(folder.path(), "acting.xml")]);
-    assert_eq!(acting.code, Some(3), "{}", acting.err);
-    for wrong in [
-        "kick.xml:2:9: error[E0304]: unknown attribute `LKneePich` of `pose` (did you mean `LKneePitch`?)",
-        "dive.toml:5:12: warning[E0371]: `LHipRoll` turns by 0.50 rad in 0.1 s, its motor by 4.16 rad/s at most",
-        "error[E0316]: no file `kik.xml` (did you mean `kick.xml`?)",
-    ] {
-        assert!(acting.err.contains(wrong), "{}", acting.err);
-    }
     // Cameras that are missing on this computer are no errors of the configuration.
     let seeing = monas(&["config", "check", &at(folder.path(), "seeing.xml")]);
     assert_eq!(seeing.code, Some(0), "{}", seeing.err);
@@ -314,5 +298,26 @@ fn what_a_body_cannot_do_is_said_with_the_activities_that_rely_on_it() {
         "lower camera, see the option `camera_bottom`: there is no `/nowhere/camera`; this concerns `Vision`",
     ] {
         assert!(seeing.err.contains(missing), "{}", seeing.err);
+    }
+}
+
+#[test]
+fn files_of_poses_are_checked_before_a_run() {
+    let body =
+        "<agents>\n  <body kind=\"nao\" kick=\"kick.xml\" dive=\"dive.toml\" fall=\"kik.xml\"/>\n</agents>\n";
+    let kick = "<poses>\n  <pose LKneePich=\"1\"/>\n</poses>\n";
+    let dive = "[[pose]]\nLHipRoll = 0.1\n[[pose]]\nduration = 0.1\nLHipRoll = 0.6\n";
+    let folder = folder(&[("agents.xml", body), ("kick.xml", kick), ("dive.toml", dive)]);
+    let check = monas(&["config", "check", &at(folder.path(), "agents.xml")]);
+    assert_eq!(check.code, Some(3), "{}", check.err);
+    for expected in [
+        "error[E0304]: unknown attribute `LKneePich` of `pose`",
+        "kick.xml:2:9",
+        "did you mean `LKneePitch`?",
+        "warning[E0371]: `LHipRoll` turns by 0.50 rad in 0.1 s, its motor by 4.16 rad/s at most",
+        "dive.toml:5:12",
+        "error[E0316]: no file `kik.xml`",
+    ] {
+        assert!(check.err.contains(expected), "{expected} is not in\n{}", check.err);
     }
 }
