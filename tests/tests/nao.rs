@@ -8,12 +8,8 @@
 
 use std::time::Duration;
 
-use monas::config::Layers;
-use monas_match::{MatchOptions, MatchSource};
-use monas_robot::topics::JOINTS;
-use monas_soccer::MotionResult;
-use monas_soccer::topics::MOTION_STATE;
-use monas_tests::{MatchRow, Variant, play, root};
+use monas_nao as _; // the body registers itself at link time
+use monas_tests::{MatchRow, Variant, play};
 
 const FIELD: Variant = Variant { name: "shooters", file: "tests/season/shooters.xml" };
 const NAO: Variant = Variant { name: "shooters_nao", file: "tests/season/shooters_nao.xml" };
@@ -50,43 +46,4 @@ fn a_match_of_naos_repeats_with_its_seed() {
     let (one, again) = (play(&naos, 7, length).unwrap(), play(&naos, 7, length).unwrap());
     assert_eq!(one.hash, again.hash);
     assert_ne!(one.hash, play(&monas_tests::MATCH, 7, length).unwrap().hash);
-}
-
-/// A greeting with an arm, in place of the kick with the left foot.
-const GREETING: &str = "<poses>\n  <pose duration=\"0.4\" RShoulderPitch=\"-0.5\"/>\n  \
-                        <pose duration=\"0.4\" RShoulderPitch=\"1.5\"/>\n</poses>\n";
-
-#[test]
-fn the_kick_of_a_file_moves_the_joints_and_behaviours_learn_its_result() {
-    let folder = tempfile::tempdir().unwrap();
-    let file = folder.path().join("greeting.xml");
-    std::fs::write(&file, GREETING).unwrap();
-    let kick_off = ["initial", "ready", "set"].map(|phase| format!("simulator.rules.{phase}_duration=0"));
-    let kick = format!("match.team.1.robot.2.body.kick={}", file.display());
-    let grammar = monas_match::grammar();
-    let layers = kick_off
-        .iter()
-        .chain([&kick])
-        .fold(Layers::new(), |layers, setting| layers.set(setting, &grammar).unwrap());
-    let path = root().join("config/nao_sim.xml");
-    let plan = MatchSource::load_with(path, &monas::Registry::linked(), &layers).unwrap();
-    let mut running = plan.start(MatchOptions { seed: 7, record: None }).unwrap();
-    let hub = running.simulation().and_then(|simulation| simulation.hub("blue-2")).unwrap();
-    let mut board = hub.blackboard("test");
-    let anatomy = monas_nao::anatomy();
-    let shoulders = ["LShoulderPitch", "RShoulderPitch"].map(|name| anatomy.joint(name).unwrap());
-    // Whether an arm has been up, and the result of the skill that ended after that.
-    let (mut is_up, mut results, mut done) = (false, Vec::new(), 0);
-    while running.now() < Duration::from_secs(60) && results.is_empty() {
-        running.advance(running.now() + Duration::from_millis(20)).unwrap();
-        board.process_messages(running.simulation().unwrap().now());
-        let angles = board.read(JOINTS).map(|joints| joints.positions.clone()).unwrap_or_default();
-        is_up |= shoulders.iter().any(|&shoulder| angles.get(shoulder).is_some_and(|&angle| angle < -0.4));
-        let Some(state) = board.read(MOTION_STATE) else { continue };
-        if state.done != done {
-            done = state.done;
-            results.extend(is_up.then(|| state.result()));
-        }
-    }
-    assert_eq!(results, [MotionResult::Performed]);
 }

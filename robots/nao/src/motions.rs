@@ -6,7 +6,6 @@
 
 use std::collections::BTreeMap;
 use std::path::Path;
-use std::sync::Arc;
 
 use monas_config::poses::{self, JointPose};
 use monas_robot::{Error, ErrorKind, FallDetector, Skill};
@@ -18,20 +17,20 @@ use crate::kinematics::{self, JointAngles, Side};
 use crate::lola::JOINTS;
 use crate::walk::TORSO_HEIGHT;
 
-/// The options that name files of one's own.
+/// The options that name files of poses in place of the built-in ones.
 pub(crate) const KICK: &str = "kick";
 pub(crate) const FALL: &str = "fall";
 pub(crate) const DIVE: &str = "dive";
 pub(crate) const STAND_UP: &str = "stand_up";
 
 /// The special actions of a body.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub(crate) struct SpecialActions {
-    kick: Arc<[JointPose]>,
-    fall: Arc<[JointPose]>,
-    dive: Arc<[JointPose]>,
-    stand_up: Arc<[JointPose]>,
-    sit_down: Arc<[JointPose]>,
+    kick: Vec<JointPose>,
+    fall: Vec<JointPose>,
+    dive: Vec<JointPose>,
+    stand_up: Vec<JointPose>,
+    sit_down: Vec<JointPose>,
 }
 
 impl SpecialActions {
@@ -45,8 +44,6 @@ impl SpecialActions {
             None => checked(poses::read(&Source::new(format!("{option}.xml"), built_in), &anatomy())),
         };
         Ok(SpecialActions {
-            // The field counts a kick from the swing back on and has it meet the ball 0.8 s later,
-            // so the motion waits in between.
             kick: action(KICK, include_str!("../motions/kick.xml"))?,
             fall: action(FALL, include_str!("../motions/fall.xml"))?,
             dive: action(DIVE, include_str!("../motions/dive.xml"))?,
@@ -74,14 +71,12 @@ impl SpecialActions {
     }
 }
 
-fn checked(
-    (poses, diagnostics): (Option<Vec<JointPose>>, Vec<Diagnostic>),
-) -> Result<Arc<[JointPose]>, Error> {
+fn checked((poses, diagnostics): (Option<Vec<JointPose>>, Vec<Diagnostic>)) -> Result<Vec<JointPose>, Error> {
     let message = || diagnostics.iter().find(|found| found.is_error()).map(ToString::to_string);
-    poses.map(Arc::from).ok_or_else(|| Error::new(ErrorKind::Configuration, message().unwrap_or_default()))
+    poses.ok_or_else(|| Error::new(ErrorKind::Configuration, message().unwrap_or_default()))
 }
 
-/// A pose of all joints, and the time that the way to it takes, s.
+/// A pose of all joints; the time that the way to it takes, s, and the stiffness on it.
 #[derive(Clone, Copy, Debug)]
 struct KeyFrame {
     seconds: f64,
