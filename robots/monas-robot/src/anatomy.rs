@@ -88,6 +88,8 @@ pub struct Anatomy {
     pub radio: usize,
     /// The joints, in the order of all messages about joints; none for a body without.
     pub joints: Vec<Joint>,
+    /// The greatest angular speed of each joint, rad/s, in the same order; none if it is not known.
+    pub joint_speeds: Vec<f64>,
     /// Whether the body has LEDs beyond those in [`Actuators`](crate::Actuators).
     pub has_leds: bool,
 }
@@ -107,6 +109,7 @@ impl Anatomy {
             skills: Vec::new(),
             radio: 0,
             joints: Vec::new(),
+            joint_speeds: Vec::new(),
             has_leds: false,
         }
     }

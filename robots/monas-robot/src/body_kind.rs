@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::fmt;
 
-use crate::{Disturbances, Error, ErrorKind, FieldColours, Robot, Skill, WrappedBody};
+use crate::{Anatomy, Disturbances, Error, ErrorKind, FieldColours, Robot, Skill, WrappedBody};
 
 /// A kind of body, as [`body_kind!`](crate::body_kind!) registers it at link time.
 #[derive(Clone, Copy)]
@@ -80,7 +80,7 @@ pub enum Capability {
 }
 
 /// An option of a kind of body.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, Debug)]
 pub struct BodyOption {
     /// The attribute that configurations use.
     pub name: &'static str,
@@ -91,7 +91,7 @@ pub struct BodyOption {
 }
 
 /// The values of an option.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, Debug)]
 pub enum OptionKind {
     /// Any text.
     Text,
@@ -103,6 +103,9 @@ pub enum OptionKind {
     Flag,
     /// A file, which a configuration names relative to its own place.
     File,
+    /// A file with a sequence of poses of the joints of this anatomy, named like other files. It is
+    /// checked with the configuration.
+    Poses(fn() -> Anatomy),
 }
 
 /// Where a body is opened.

@@ -6,7 +6,7 @@ use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use monas_robot::{BodyOption, Error, Image, Images, ObjectSet, OptionKind};
+use monas_robot::{Error, Image, Images, ObjectSet};
 use narukom::Timestamp;
 
 use crate::anatomy;
@@ -16,29 +16,10 @@ use crate::kinematics::{self, JointAngles, NaoCamera, Side};
 use crate::video_device::VideoDevice;
 
 /// The options of the cameras.
-pub(crate) const OPTIONS: &[BodyOption] = &[
-    option(TOP, OptionKind::Text, "the device of the upper camera; by default `/dev/video-top`"),
-    option(BOTTOM, OptionKind::Text, "the device of the lower camera; by default `/dev/video-bottom`"),
-    option(
-        TURNED,
-        OptionKind::Flag,
-        "`0` if the upper camera's images are upright; by default they are turned, since it is mounted upside down",
-    ),
-    option(
-        TODAY,
-        OptionKind::Flag,
-        "`1` if the ball is black and white and the goals are white; by default they are of 2010",
-    ),
-];
-
-const TOP: &str = "camera_top";
-const BOTTOM: &str = "camera_bottom";
-const TURNED: &str = "camera_top_turned";
-const TODAY: &str = "objects_of_today";
-
-const fn option(name: &'static str, kind: OptionKind, doc: &'static str) -> BodyOption {
-    BodyOption { name, kind, doc }
-}
+pub(crate) const TOP: &str = "camera_top";
+pub(crate) const BOTTOM: &str = "camera_bottom";
+pub(crate) const TURNED: &str = "camera_top_turned";
+pub(crate) const TODAY: &str = "objects_of_today";
 
 /// Where the cameras are. By default where a Nao V6 has them.
 #[derive(Clone, PartialEq, Eq, Debug)]

@@ -11,7 +11,7 @@ use crate::anatomy::{self, NaoJoint, limits};
 use crate::kinematics::JointAngles;
 use crate::leds;
 use crate::lola::{ActuatorPacket, CYCLE_SECONDS, JOINTS, SensorPacket, Touch};
-use crate::motions::{Motion, stand};
+use crate::motions::{Motion, SpecialActions, stand};
 use crate::walk::{SteppingWalk, WalkEngine, WalkVelocity, displacement};
 
 /// Stiffness of the joints in motion.
@@ -44,6 +44,7 @@ enum Activity {
 pub(crate) struct NaoControl {
     anatomy: Anatomy,
     walk: Box<dyn WalkEngine>,
+    actions: SpecialActions,
     activity: Activity,
     commands: Actuators,
     skill_number: u64,
@@ -63,10 +64,11 @@ pub(crate) struct NaoControl {
 }
 
 impl NaoControl {
-    pub(crate) fn new() -> NaoControl {
+    pub(crate) fn new(actions: SpecialActions) -> NaoControl {
         NaoControl {
             anatomy: anatomy::anatomy(),
             walk: Box::new(SteppingWalk::default()),
+            actions,
             activity: Activity::Waiting,
             commands: Actuators::default(),
             skill_number: 0,
@@ -86,6 +88,10 @@ impl NaoControl {
 
     pub(crate) fn set_walk(&mut self, walk: Box<dyn WalkEngine>) {
         self.walk = walk;
+    }
+
+    pub(crate) fn set_actions(&mut self, actions: SpecialActions) {
+        self.actions = actions;
     }
 
     pub(crate) fn anatomy(&self) -> &Anatomy {
@@ -163,17 +169,7 @@ impl NaoControl {
                 self.walk.advance(velocity, seconds, &mut self.angles);
                 (STIFFNESS, false)
             }
-            Activity::Active { skill: Some((_, motion)) } => {
-                if motion.advance(seconds, falls, &mut self.angles) {
-                    let is_performed = motion.is_performed(falls) && self.is_in_pose();
-                    self.end_skill(match is_performed {
-                        true => SkillResult::Performed,
-                        false => SkillResult::Interrupted,
-                    });
-                }
-                self.move_head();
-                (STIFFNESS, false)
-            }
+            Activity::Active { skill: Some(_) } => (self.perform().unwrap_or(STIFFNESS), false),
             Activity::SittingDown { motion } => {
                 if motion.advance(seconds, falls, &mut self.angles) || falls.is_inclined() {
                     self.activity = Activity::Relaxing { elapsed: 0.0 };
@@ -186,6 +182,26 @@ impl NaoControl {
                 (part.max(0.0) * STIFFNESS, part <= 0.0)
             }
         }
+    }
+
+    /// Advances the skill; returns its own stiffness, if it has one.
+    fn perform(&mut self) -> Option<f64> {
+        // A skill may move the head too.
+        self.move_head();
+        let Activity::Active { skill: Some((_, motion)) } = &mut self.activity else { return None };
+        let is_over = motion.advance(CYCLE_SECONDS, self.falls, &mut self.angles);
+        let stiffness = motion.stiffness();
+        if is_over {
+            let mut joints = motion.joints();
+            let is_in_pose =
+                joints.all(|joint| (self.measured[joint] - self.angles[joint]).abs() < POSE_TOLERANCE);
+            let is_performed = motion.is_performed(self.falls) && is_in_pose;
+            self.end_skill(match is_performed {
+                true => SkillResult::Performed,
+                false => SkillResult::Interrupted,
+            });
+        }
+        stiffness
     }
 
     fn move_head(&mut self) {
@@ -205,7 +221,7 @@ impl NaoControl {
             return;
         }
         self.skill_number = number;
-        match (&mut self.activity, Motion::of(wanted, self.angles)) {
+        match (&mut self.activity, self.actions.motion(wanted, self.angles)) {
             (Activity::Active { skill: skill @ None }, Some(motion)) => *skill = Some((wanted, motion)),
             (Activity::Active { skill: Some(_) }, _) => {}
             _ => (self.skill_done, self.skill_result) = (number, SkillResult::Refused),
@@ -216,12 +232,6 @@ impl NaoControl {
         (self.skill_done, self.skill_result) = (self.skill_number, result);
         self.walk.stop();
         self.activity = Activity::Active { skill: None };
-    }
-
-    /// Whether the joints that skills move are where they are commanded to be.
-    fn is_in_pose(&self) -> bool {
-        let joints = self.measured.iter().zip(&self.angles).skip(NaoJoint::LShoulderPitch as usize);
-        joints.into_iter().all(|(measured, commanded)| (measured - commanded).abs() < POSE_TOLERANCE)
     }
 
     pub(crate) fn command_joints(&mut self, commands: &JointCommands) -> Result<(), Error> {
@@ -241,7 +251,7 @@ impl NaoControl {
         self.walk.stop();
         self.activity = match self.activity {
             Activity::Waiting | Activity::Stiffening { .. } => Activity::Relaxing { elapsed: 0.0 },
-            _ => Activity::SittingDown { motion: Motion::sit_down(self.angles) },
+            _ => Activity::SittingDown { motion: self.actions.sit_down(self.angles) },
         };
     }
 

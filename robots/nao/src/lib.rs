@@ -8,8 +8,9 @@
 //! agents in another process. A configuration names the body: `<body kind="nao"/>`.
 //!
 //! The commands in the plane, which all bodies have, become joint targets here: a [`WalkEngine`]
-//! turns velocities into steps, skills are motions of the joints, and odometry follows from the
-//! foot on the ground by the [`kinematics`] of the legs. [`mass`] has the centre of mass.
+//! turns velocities into steps, skills are motions of the joints through the poses of a file, see
+//! [`poses`](monas_config::poses), and odometry follows from the foot on the ground by the
+//! [`kinematics`] of the legs. [`mass`] has the centre of mass.
 //!
 //! # Limits
 //!
@@ -42,6 +43,7 @@ pub mod lola;
 pub mod mass;
 mod motions;
 mod nao;
+mod options;
 mod served_nao;
 mod server;
 mod side_channels;
@@ -68,7 +70,7 @@ pub use walk::{SteppingWalk, WalkEngine, WalkVelocity};
 monas_robot::body_kind!(BodyKind {
     name: "nao",
     summary: "a Nao V6 through LoLA; in simulated time through a LoLA server over the field's body",
-    options: cameras::OPTIONS,
+    options: options::OPTIONS,
     has_own_time: |_| false,
     limits,
     open,
@@ -103,11 +105,14 @@ fn limits(settings: &BodySettings, surroundings: Surroundings) -> Vec<BodyLimit>
 
 /// Opens a Nao: in a simulated world over its body there, else at a socket.
 fn open(site: BodySite) -> Result<Box<dyn Robot>, monas_robot::Error> {
+    let actions = motions::SpecialActions::of(&site.options)?;
     match site {
-        BodySite { simulated: Some(body), address: None, .. } => Ok(Box::new(SimulatedNao::new(body)?)),
+        BodySite { simulated: Some(body), address: None, .. } => {
+            Ok(Box::new(SimulatedNao::new(body)?.with_actions(actions)))
+        }
         BodySite { address, options, .. } => {
-            let path = address.as_deref().unwrap_or(lola::SOCKET);
-            Ok(Box::new(Nao::open(Path::new(path))?.with_cameras(CameraPlaces::of(&options))))
+            let nao = Nao::open(Path::new(address.as_deref().unwrap_or(lola::SOCKET)))?;
+            Ok(Box::new(nao.with_actions(actions).with_cameras(CameraPlaces::of(&options))))
         }
     }
 }

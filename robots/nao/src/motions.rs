@@ -1,17 +1,86 @@
-//! Skills as motions of the joints: poses at times.
+//! Skills as motions of the joints: sequences of poses, from files.
+//!
+//! The files are [special actions](monas_config::poses). Those of a skill that has sides are for
+//! the left one: the right one is the mirror image. When a motion is over, and whether it has done
+//! what it is for, follows from the skill and not from the file.
 
-use monas_robot::{FallDetector, Skill};
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use monas_config::poses::{self, JointPose};
+use monas_robot::{Error, ErrorKind, FallDetector, Skill};
 use nalgebra::Isometry3;
+use yase::{Diagnostic, Source};
 
-use crate::anatomy::NaoJoint;
+use crate::anatomy::{NaoJoint, anatomy, mirrored};
 use crate::kinematics::{self, JointAngles, Side};
 use crate::lola::JOINTS;
 use crate::walk::TORSO_HEIGHT;
 
-/// A pose of all joints except the head, and the time that the way to it takes, s.
+/// The options that name files of poses in place of the built-in ones.
+pub(crate) const KICK: &str = "kick";
+pub(crate) const FALL: &str = "fall";
+pub(crate) const DIVE: &str = "dive";
+pub(crate) const STAND_UP: &str = "stand_up";
+
+/// The special actions of a body.
+#[derive(Debug)]
+pub(crate) struct SpecialActions {
+    kick: Vec<JointPose>,
+    fall: Vec<JointPose>,
+    dive: Vec<JointPose>,
+    stand_up: Vec<JointPose>,
+    sit_down: Vec<JointPose>,
+}
+
+impl SpecialActions {
+    /// Those of the files that the options of a configuration name, otherwise the built-in ones.
+    ///
+    /// # Errors
+    /// A file cannot be read or has errors; the message has its first one.
+    pub(crate) fn of(options: &BTreeMap<String, String>) -> Result<SpecialActions, Error> {
+        let action = |option: &str, built_in| match options.get(option) {
+            Some(path) => checked(poses::load(Path::new(path), &anatomy())),
+            None => checked(poses::read(&Source::new(format!("{option}.xml"), built_in), &anatomy())),
+        };
+        Ok(SpecialActions {
+            kick: action(KICK, include_str!("../motions/kick.xml"))?,
+            fall: action(FALL, include_str!("../motions/fall.xml"))?,
+            dive: action(DIVE, include_str!("../motions/dive.xml"))?,
+            stand_up: action(STAND_UP, include_str!("../motions/stand_up.xml"))?,
+            sit_down: action("sit_down", include_str!("../motions/sit_down.xml"))?,
+        })
+    }
+
+    /// The motion of a skill, from the present angles; none for no skill.
+    pub(crate) fn motion(&self, skill: Skill, from: JointAngles) -> Option<Motion> {
+        let (poses, end) = match skill {
+            Skill::NoSkill => return None,
+            Skill::KickLeft | Skill::KickRight => (&self.kick, MotionEnd::AtLastPose),
+            Skill::FallLeft | Skill::FallRight => (&self.fall, MotionEnd::WhenLying { at_most: 1.0 }),
+            Skill::DiveLeft | Skill::DiveRight => (&self.dive, MotionEnd::WhenLying { at_most: 1.0 }),
+            Skill::StandUp => (&self.stand_up, MotionEnd::WhenUpright { at_most: 5.0 }),
+        };
+        let is_right = matches!(skill, Skill::KickRight | Skill::FallRight | Skill::DiveRight);
+        Some(Motion::through(poses, is_right, end, from))
+    }
+
+    /// Sits down.
+    pub(crate) fn sit_down(&self, from: JointAngles) -> Motion {
+        Motion::through(&self.sit_down, false, MotionEnd::AtLastPose, from)
+    }
+}
+
+fn checked((poses, diagnostics): (Option<Vec<JointPose>>, Vec<Diagnostic>)) -> Result<Vec<JointPose>, Error> {
+    let message = || diagnostics.iter().find(|found| found.is_error()).map(ToString::to_string);
+    poses.ok_or_else(|| Error::new(ErrorKind::Configuration, message().unwrap_or_default()))
+}
+
+/// A pose of all joints; the time that the way to it takes, s, and the stiffness on it.
 #[derive(Clone, Copy, Debug)]
 struct KeyFrame {
     seconds: f64,
+    stiffness: Option<f64>,
     angles: JointAngles,
 }
 
@@ -31,25 +100,24 @@ enum MotionEnd {
 pub(crate) struct Motion {
     frames: Vec<KeyFrame>,
     end: MotionEnd,
+    /// The joints that it moves; others do what walk and head commands say.
+    moves: [bool; JOINTS],
     from: JointAngles,
     frame: usize,
     elapsed: f64,
+    stiffness: Option<f64>,
 }
 
 /// How the arms hang while standing and walking: shoulder pitch and roll, elbow yaw and roll of the
 /// left arm.
 const LEFT_ARM: [f64; 4] = [1.5, 0.2, -1.2, -0.4];
 
-/// The pose in which the robot stands.
+/// The pose in which the robot stands: both feet below the hips, the torso upright.
 pub(crate) fn stand() -> JointAngles {
-    standing([(0.0, 0.05, 0.0), (0.0, -0.05, 0.0)])
-}
-
-/// A pose with the left and the right foot at x, y and above the ground, the torso upright.
-fn standing(feet: [(f64, f64, f64); 2]) -> JointAngles {
     let mut angles = [0.0; JOINTS];
-    for (side, (x, y, lift)) in Side::BOTH.into_iter().zip(feet) {
-        kinematics::place_foot(side, &Isometry3::translation(x, y, lift - TORSO_HEIGHT), 0.0, &mut angles);
+    for side in Side::BOTH {
+        let foot = Isometry3::translation(0.0, side.sign() * 0.05, -TORSO_HEIGHT);
+        kinematics::place_foot(side, &foot, 0.0, &mut angles);
         let arm = side.arm();
         let [pitch, roll, yaw, elbow] = LEFT_ARM;
         angles[arm] = pitch;
@@ -60,77 +128,31 @@ fn standing(feet: [(f64, f64, f64); 2]) -> JointAngles {
     angles
 }
 
-/// A pose with folded legs: hips, knees and ankles bent.
-fn folded(hip: f64, knee: f64, ankle: f64) -> JointAngles {
-    let mut angles = stand();
-    for side in Side::BOTH {
-        let leg = side.leg();
-        angles[leg] = 0.0;
-        angles[leg + 1] = hip;
-        angles[leg + 2] = knee;
-        angles[leg + 3] = ankle;
-        angles[leg + 4] = 0.0;
-    }
-    angles
-}
-
-/// The pose in which the robot sits on its heels.
-pub(crate) fn sitting() -> JointAngles {
-    folded(-0.9, 2.1, -1.18)
-}
-
-/// A pose that leans to a side, from the ankles and the hips.
-fn leaning(side: Side, mut angles: JointAngles) -> JointAngles {
-    for leg in Side::BOTH.map(Side::leg) {
-        angles[leg] = side.sign() * 0.15;
-        angles[leg + 4] = side.sign() * 0.38;
-    }
-    angles[side.arm() + 1] = side.sign() * 1.2;
-    angles
-}
-
 impl Motion {
-    fn new(from: JointAngles, frames: &[(f64, JointAngles)], end: MotionEnd) -> Motion {
-        let frames = frames.iter().map(|&(seconds, angles)| KeyFrame { seconds, angles }).collect();
-        Motion { frames, end, from, frame: 0, elapsed: 0.0 }
-    }
-
-    /// The motion of a skill, from the present angles; none for no skill.
-    pub(crate) fn of(skill: Skill, from: JointAngles) -> Option<Motion> {
-        let side = match skill {
-            Skill::KickLeft | Skill::FallLeft | Skill::DiveLeft => Side::Left,
-            _ => Side::Right,
-        };
-        let lies = MotionEnd::WhenLying { at_most: 1.0 };
-        Some(match skill {
-            Skill::NoSkill => return None,
-            Skill::KickLeft | Skill::KickRight => kick(side, from),
-            Skill::DiveLeft | Skill::DiveRight => Motion::new(from, &[(0.06, leaning(side, stand()))], lies),
-            Skill::FallLeft | Skill::FallRight => {
-                // It leans while its motors still lower the hips, which takes them 0.14 s.
-                let kneeling = folded(-0.75, 1.6, -0.85);
-                Motion::new(from, &[(0.06, kneeling), (0.06, leaning(side, kneeling))], lies)
+    /// A motion through poses, or through their mirror images.
+    fn through(poses: &[JointPose], is_mirrored: bool, end: MotionEnd, from: JointAngles) -> Motion {
+        let (mut angles, mut moves, mut stiffness) = (from, [false; JOINTS], None);
+        let frames = poses.iter().map(|pose| {
+            for &(joint, angle) in &pose.angles {
+                let (joint, angle) = if is_mirrored { mirrored(joint, angle) } else { (joint, angle) };
+                (angles[joint], moves[joint]) = (angle, true);
             }
-            Skill::StandUp => {
-                let upright = MotionEnd::WhenUpright { at_most: 5.0 };
-                // The legs are in the stand again before the torso is upright.
-                let folded = folded(-1.5, 2.0, -1.1);
-                Motion::new(from, &[(0.2, folded), (0.1, folded), (0.5, stand())], upright)
-            }
-        })
-    }
-
-    /// Sits down.
-    pub(crate) fn sit_down(from: JointAngles) -> Motion {
-        Motion::new(from, &[(1.5, sitting())], MotionEnd::AtLastPose)
+            stiffness = pose.stiffness.or(stiffness);
+            KeyFrame { seconds: pose.seconds, stiffness, angles }
+        });
+        let frames: Vec<KeyFrame> = frames.collect();
+        let stiffness = frames.first().and_then(|frame| frame.stiffness);
+        Motion { frames, end, moves, from, frame: 0, elapsed: 0.0, stiffness }
     }
 
     /// Goes to the pose in which the robot stands.
     pub(crate) fn stand(from: JointAngles, seconds: f64) -> Motion {
-        Motion::new(from, &[(seconds, stand())], MotionEnd::AtLastPose)
+        let body = NaoJoint::LShoulderPitch as usize..JOINTS;
+        let angles = body.zip(stand().into_iter().skip(NaoJoint::LShoulderPitch as usize)).collect();
+        Motion::through(&[JointPose { seconds, stiffness: None, angles }], false, MotionEnd::AtLastPose, from)
     }
 
-    /// Advances by one cycle and sets all joints except the head's. Returns whether it is over.
+    /// Advances by one cycle and sets the joints that it moves. Returns whether it is over.
     pub(crate) fn advance(&mut self, seconds: f64, falls: FallDetector, angles: &mut JointAngles) -> bool {
         self.elapsed += seconds;
         while let Some(frame) = self.frames.get(self.frame)
@@ -140,10 +162,13 @@ impl Motion {
             self.frame += 1;
         }
         let (to, part) = match self.frames.get(self.frame) {
-            Some(frame) => (&frame.angles, self.elapsed / frame.seconds),
+            Some(frame) => {
+                self.stiffness = frame.stiffness;
+                (&frame.angles, self.elapsed / frame.seconds)
+            }
             None => (&self.from, 0.0),
         };
-        for joint in NaoJoint::LShoulderPitch as usize..JOINTS {
+        for joint in self.joints() {
             angles[joint] = self.from[joint] + (to[joint] - self.from[joint]) * part;
         }
         self.frame == self.frames.len()
@@ -155,6 +180,17 @@ impl Motion {
             }
     }
 
+    /// The joints that it moves.
+    pub(crate) fn joints(&self) -> impl Iterator<Item = usize> + use<> {
+        let moves = self.moves;
+        (0..JOINTS).filter(move |&joint| moves[joint])
+    }
+
+    /// The stiffness of all joints, if the motion has one of its own.
+    pub(crate) fn stiffness(&self) -> Option<f64> {
+        self.stiffness
+    }
+
     /// Whether the torso is inclined as after the whole motion.
     pub(crate) fn is_performed(&self, falls: FallDetector) -> bool {
         match self.end {
@@ -162,21 +198,6 @@ impl Motion {
             MotionEnd::AtLastPose | MotionEnd::WhenUpright { .. } => !falls.is_inclined(),
         }
     }
-}
-
-/// Swings a foot back, then ahead through the ball. The field counts a kick from the swing back on
-/// and has it meet the ball 0.8 s later, so the motion waits in between.
-fn kick(side: Side, from: JointAngles) -> Motion {
-    let pose = |x: f64, lift: f64| {
-        let mut feet = [(0.0, 0.05, 0.0), (0.0, -0.05, 0.0)];
-        let foot = &mut feet[side as usize];
-        (foot.0, foot.2) = (x, lift);
-        standing(feet)
-    };
-    let (back, ahead) = (pose(-0.07, 0.04), pose(0.1, 0.03));
-    let frames =
-        [(0.12, pose(0.0, 0.04)), (0.1, back), (0.7, back), (0.1, ahead), (0.3, stand()), (0.4, stand())];
-    Motion::new(from, &frames, MotionEnd::AtLastPose)
 }
 
 #[cfg(test)]
@@ -195,13 +216,24 @@ mod tests {
         Skill::StandUp,
     ];
 
+    fn built_in() -> SpecialActions {
+        SpecialActions::of(&BTreeMap::new()).unwrap()
+    }
+
+    fn joint(name: &str) -> usize {
+        anatomy().joint(name).unwrap()
+    }
+
     #[test]
     fn motions_stay_within_the_limits_and_end() {
         let mut falls = FallDetector::default();
         falls.measure(0.0, 0.5);
+        let actions = built_in();
+        let mut sitting = stand();
+        actions.sit_down(stand()).advance(2.0, falls, &mut sitting);
         let mut motions: Vec<Motion> =
-            SKILLS.iter().filter_map(|&skill| Motion::of(skill, stand())).collect();
-        motions.extend([Motion::sit_down(stand()), Motion::stand(sitting(), 1.0)]);
+            SKILLS.iter().filter_map(|&skill| actions.motion(skill, stand())).collect();
+        motions.extend([actions.sit_down(stand()), Motion::stand(sitting, 1.0)]);
         for mut motion in motions {
             let mut angles = stand();
             let mut cycles = 0;
@@ -213,6 +245,53 @@ mod tests {
                 }
             }
         }
-        assert!(Motion::of(Skill::NoSkill, stand()).is_none());
+        assert!(actions.motion(Skill::NoSkill, stand()).is_none());
+    }
+
+    #[test]
+    fn the_built_in_actions_move_all_but_the_head_and_return_to_the_stand() {
+        let actions = built_in();
+        for skill in SKILLS {
+            let motion = actions.motion(skill, [0.1; JOINTS]).unwrap();
+            assert!(motion.joints().eq(NaoJoint::LShoulderPitch as usize..JOINTS), "{skill:?}");
+            if [Skill::KickLeft, Skill::KickRight, Skill::StandUp].contains(&skill) {
+                let last = motion.frames.last().unwrap();
+                assert_eq!(last.angles[2..], stand()[2..], "{skill:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn joints_that_a_pose_does_not_name_keep_their_angle() {
+        let pose = |seconds, stiffness, angles: &[(&str, f64)]| {
+            let angles = angles.iter().map(|&(name, angle)| (joint(name), angle)).collect();
+            JointPose { seconds, stiffness, angles }
+        };
+        let poses = [
+            pose(0.5, None, &[("LElbowYaw", 1.0), ("HeadYaw", -0.4)]),
+            pose(0.5, Some(0.3), &[("LShoulderRoll", 0.5)]),
+            pose(0.5, None, &[]),
+        ];
+        for (is_mirrored, side, sign) in [(false, "L", 1.0), (true, "R", -1.0)] {
+            let [yaw, roll] = ["ElbowYaw", "ShoulderRoll"].map(|name| joint(&format!("{side}{name}")));
+            let mut motion = Motion::through(&poses, is_mirrored, MotionEnd::AtLastPose, [0.0; JOINTS]);
+            let mut angles = [0.0; JOINTS];
+            let falls = FallDetector::default();
+            for (yaws, rolls, stiffness, is_over) in [
+                (0.5, 0.0, None, false),
+                (1.0, 0.0, Some(0.3), false),
+                (1.0, 0.25, Some(0.3), false),
+                (1.0, 0.5, Some(0.3), false),
+                (1.0, 0.5, Some(0.3), false),
+                (1.0, 0.5, Some(0.3), true),
+            ] {
+                assert_eq!(motion.advance(0.25, falls, &mut angles), is_over);
+                assert_eq!((angles[yaw], angles[roll]), (sign * yaws, sign * rolls));
+                assert_eq!(motion.stiffness(), stiffness);
+                // The commands of walk and head have the joints that no pose names.
+                angles[joint("HeadPitch")] = 0.2;
+            }
+            assert_eq!((angles[joint("HeadYaw")], angles[joint("HeadPitch")]), (sign * -0.4, 0.2));
+        }
     }
 }

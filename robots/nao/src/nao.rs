@@ -1,5 +1,6 @@
 //! A Nao on its own hardware, or on a LoLA server in another process, in real time.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
@@ -11,6 +12,7 @@ use narukom::Timestamp;
 use crate::cameras::{self, CameraPlaces, Cameras};
 use crate::control::NaoControl;
 use crate::lola::SensorPacket;
+use crate::motions::SpecialActions;
 use crate::side_channels::RobotChannels;
 use crate::simulated_nao::say;
 use crate::socket::Socket;
@@ -72,7 +74,7 @@ impl Nao {
     /// # Errors
     /// As in [`open`](Nao::open).
     pub fn with_walk(path: &Path, walk: Option<Box<dyn WalkEngine>>) -> Result<Nao, Error> {
-        let mut control = NaoControl::new();
+        let mut control = NaoControl::new(SpecialActions::of(&BTreeMap::new())?);
         if let Some(walk) = walk {
             control.set_walk(walk);
         }
@@ -111,6 +113,13 @@ impl Nao {
                 Err(Error::new(ErrorKind::Disconnected, format!("no LoLA answers at {}", path.display())))
             }
         }
+    }
+
+    /// The body with these special actions.
+    #[must_use]
+    pub(crate) fn with_actions(self, actions: SpecialActions) -> Nao {
+        self.shared.lock().control.set_actions(actions);
+        self
     }
 
     /// The body with its cameras in other places than those of a Nao V6. They are opened by

@@ -1,10 +1,13 @@
 //! A Nao in simulated time: a LoLA server over a simulated body, and its client, in lockstep.
 
+use std::collections::BTreeMap;
+
 use monas_robot::{Actuators, Anatomy, Error, JointCommands, Leds, Percepts, Robot};
 use narukom::Timestamp;
 
 use crate::control::NaoControl;
 use crate::lola::SensorPacket;
+use crate::motions::SpecialActions;
 use crate::server::LolaServer;
 use crate::side_channels::{self, RobotChannels};
 use crate::socket::Socket;
@@ -32,7 +35,7 @@ impl SimulatedNao {
         let (server, lola) = Socket::pair()?;
         let (simulated, channels) = side_channels::pair()?;
         let server = LolaServer::new(body, server, simulated);
-        let mut control = NaoControl::new();
+        let mut control = NaoControl::new(SpecialActions::of(&BTreeMap::new())?);
         control.anatomy_mut().radio = server.radio();
         Ok(SimulatedNao {
             server,
@@ -42,6 +45,13 @@ impl SimulatedNao {
             sensors: SensorPacket::default(),
             bytes: Vec::new(),
         })
+    }
+
+    /// The body with these special actions.
+    #[must_use]
+    pub(crate) fn with_actions(mut self, actions: SpecialActions) -> SimulatedNao {
+        self.control.set_actions(actions);
+        self
     }
 }
 

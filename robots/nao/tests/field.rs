@@ -1,8 +1,10 @@
 //! A Nao over a robot of the embedded field.
 #![allow(clippy::panic, clippy::unwrap_used)] // tests
 
+use std::collections::BTreeMap;
+
 use monas_nao::SimulatedNao;
-use monas_robot::{Actuators, JointCommands, Percepts, Posture, Robot, Skill};
+use monas_robot::{Actuators, BodySettings, JointCommands, Percepts, Posture, Robot, Skill, SkillResult};
 use monas_sim::{
     BodyPhase, FieldSide, GameState, Physics, Pose, RobotSetup, Setup, SharedField, SimulatedWorld,
     TeamColour, TeamSetup,
@@ -36,7 +38,7 @@ fn field_with(physics: Physics) -> SharedField {
 /// A Nao on a field, and the time.
 struct Trial {
     field: SharedField,
-    nao: SimulatedNao,
+    nao: Box<dyn Robot>,
     percepts: Percepts,
     cycle: u64,
 }
@@ -47,7 +49,14 @@ impl Trial {
     }
 
     fn on(field: SharedField) -> Trial {
-        let nao = SimulatedNao::new(Box::new(field.body(0).unwrap())).unwrap();
+        Trial::with(field, &BTreeMap::new())
+    }
+
+    /// A trial of the body that a configuration with these options opens.
+    fn with(field: SharedField, options: &BTreeMap<String, String>) -> Trial {
+        let settings =
+            BodySettings { kind: "nao".to_owned(), options: options.clone(), ..BodySettings::default() };
+        let nao = settings.open(Some(Box::new(field.body(0).unwrap())), 7).unwrap();
         let mut trial = Trial { field, nao, percepts: Percepts::default(), cycle: 0 };
         trial.run(1.5, Actuators::default());
         trial
@@ -239,4 +248,61 @@ fn attempts_to_stand(trial: &mut Trial) -> u32 {
         before = phase;
     }
     panic!("it does not stand after {attempts} attempts");
+}
+
+/// A greeting with an arm and the head, in place of the kick.
+const GREETING: &str = r#"<poses>
+  <pose duration="0.5" RShoulderPitch="-0.5" HeadYaw="0.6"/>
+  <pose duration="0.5" RElbowRoll="1.2"/>
+  <pose duration="0.5" stiffness="0.5" RShoulderPitch="1.5" RElbowRoll="0.4"/>
+</poses>"#;
+
+#[test]
+fn joints_pass_through_the_poses_of_a_file_and_the_skill_has_a_result() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("greeting.xml");
+    std::fs::write(&file, GREETING).unwrap();
+    let options = BTreeMap::from([("kick".to_owned(), file.display().to_string())]);
+    for (skill, side, sign) in [(Skill::KickLeft, "R", 1.0), (Skill::KickRight, "L", -1.0)] {
+        let mut trial = Trial::with(field(), &options);
+        let anatomy = trial.nao.anatomy();
+        let joints =
+            ["ShoulderPitch", "ElbowRoll"].map(|name| anatomy.joint(&format!("{side}{name}")).unwrap());
+        let command =
+            Actuators { skill: skill as i32, skill_number: 1, head_yaw: -0.3, ..Actuators::default() };
+        let before = trial.pose();
+        for (seconds, shoulder, elbow, stiffness) in
+            [(0.25, 0.5, 0.4, 0.8), (0.5, -0.5, 0.8, 0.8), (0.5, 0.5, 0.8, 0.5)]
+        {
+            trial.run(seconds, command);
+            let felt = trial.percepts.joints.as_ref().unwrap();
+            let [pitch, roll] = joints.map(|joint| felt.positions[joint]);
+            // Targets arrive two cycles later.
+            assert!((pitch - shoulder).abs() < 0.15 && (roll - sign * elbow).abs() < 0.1, "{pitch} {roll}");
+            assert!((felt.stiffnesses[joints[0]] - stiffness).abs() < 1e-6, "{skill:?}");
+            assert_eq!((trial.posture(), trial.percepts.sensors.skill_done), (Posture::Busy, 0));
+        }
+        assert!((trial.percepts.sensors.head_yaw - sign * 0.6).abs() < 0.05, "{:?}", trial.percepts.sensors);
+        trial.run(0.5, command);
+        let felt = &trial.percepts.sensors;
+        assert_eq!((felt.skill_done, felt.skill_result()), (1, SkillResult::Performed));
+        assert_eq!(trial.posture(), Posture::Standing);
+        // The legs had no part in it, and the head follows its commands again.
+        assert!((trial.pose().position - before.position).norm() < 1e-6);
+        trial.run(0.5, command);
+        assert!((trial.percepts.sensors.head_yaw + 0.3).abs() < 1e-3, "{:?}", trial.percepts.sensors);
+    }
+}
+
+#[test]
+fn a_file_of_poses_with_errors_opens_no_body() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("dive.xml");
+    std::fs::write(&file, "<pose LKneePitch=90/>").unwrap();
+    let options = BTreeMap::from([("dive".to_owned(), file.display().to_string())]);
+    let settings = BodySettings { kind: "nao".to_owned(), options, ..BodySettings::default() };
+    let error = settings.open(Some(Box::new(field().body(0).unwrap())), 7).map(drop).unwrap_err();
+    let expected =
+        "dive.xml:1:18: error[E0306]: `LKneePitch` is `90`, expected a number from -0.0923 to 2.1125";
+    assert!(error.to_string().contains(expected), "{error}");
 }

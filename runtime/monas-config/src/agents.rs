@@ -22,6 +22,7 @@ use super::layers::Layers;
 use super::links::LinkReader;
 use super::modules;
 use super::paths;
+use super::poses;
 use super::resolve::{resolve, sort};
 use super::values::Values;
 use monas_core::activity::Activity;
@@ -250,6 +251,11 @@ impl AgentReader<'_> {
             }
             OptionKind::File => {
                 return self.file(given, option.doc).map(|found| found.to_string_lossy().into_owned());
+            }
+            OptionKind::Poses(anatomy) => {
+                let file = self.file(given, option.doc)?;
+                self.diagnostics.extend(poses::load(&file, &anatomy()).1);
+                return Some(file.to_string_lossy().into_owned());
             }
             OptionKind::Name => "a name",
             OptionKind::Number => "a number",

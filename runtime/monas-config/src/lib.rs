@@ -57,6 +57,10 @@
 //! [`XmlConfig`] stores names, numbers and tables in a file, and [`Xml`] queries a tree; both read
 //! the listings of the thesis, and changes leave the rest of the file as it was.
 //!
+//! # Special actions
+//!
+//! [`poses`] reads motions of a body's joints, which options of `body` name.
+//!
 //! # Links
 //!
 //! ```xml
@@ -114,6 +118,7 @@ mod log_settings;
 mod model;
 mod modules;
 mod paths;
+pub mod poses;
 mod resolve;
 mod schema;
 mod severity;

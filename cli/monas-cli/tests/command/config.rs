@@ -300,3 +300,50 @@ fn what_a_body_cannot_do_is_said_with_the_activities_that_rely_on_it() {
         assert!(seeing.err.contains(missing), "{}", seeing.err);
     }
 }
+
+#[test]
+fn files_of_poses_are_checked_before_a_run() {
+    let body =
+        "<agents>\n  <body kind=\"nao\" kick=\"kick.xml\" dive=\"dive.toml\" fall=\"kik.xml\"/>\n</agents>\n";
+    let kick = "<poses>\n  <pose LKneePich=\"1\"/>\n</poses>\n";
+    let dive = "[[pose]]\nLHipRoll = 0.1\n[[pose]]\nduration = 0.1\nLHipRoll = 0.6\n";
+    let folder = folder(&[("agents.xml", body), ("kick.xml", kick), ("dive.toml", dive)]);
+    let check = monas(&["config", "check", &at(folder.path(), "agents.xml")]);
+    assert_eq!(check.code, Some(3), "{}", check.err);
+    for expected in [
+        "error[E0304]: unknown attribute `LKneePich` of `pose`",
+        "kick.xml:2:9",
+        "did you mean `LKneePitch`?",
+        "warning[E0371]: `LHipRoll` turns by 0.50 rad in 0.1 s, its motor by 4.16 rad/s at most",
+        "dive.toml:5:12",
+        "error[E0316]: no file `kik.xml`",
+    ] {
+        assert!(check.err.contains(expected), "{expected} is not in\n{}", check.err);
+    }
+}
+
+#[test]
+fn the_kick_of_a_file_moves_the_joints_and_behaviours_learn_its_result() {
+    let poses = "<poses>\n  <pose duration=\"0.4\" RShoulderPitch=\"-0.5\"/>\n  <pose duration=\"0.4\" RShoulderPitch=\"1.5\"/>\n</poses>\n";
+    let folder = folder(&[("greeting.xml", poses)]);
+    let (kick, tape) = (at(folder.path(), "greeting.xml"), at(folder.path(), "kick.mcap"));
+    let mut run = vec!["run", "config/nao_sim.xml", "--seed", "8", "--for", "15s", "--record", &tape];
+    let body = format!("match.team.1.robot.2.body.kick={kick}");
+    let phases = ["initial", "ready", "set"].map(|phase| format!("simulator.rules.{phase}_duration=0"));
+    run.extend(phases.iter().chain([&body]).flat_map(|setting| ["--set", setting]));
+    let run = monas(&run);
+    assert_eq!(run.code, Some(0), "{}", run.err);
+    let exported = |topic: &str| -> Vec<Value> {
+        let answer = monas(&["tape", "export", &tape, "--topic", topic, "--host", "blue-2"]);
+        answer.out.lines().map(|line| serde_json::from_str(line).expect("a line is an object")).collect()
+    };
+    let result = exported("soccer/motion_state").into_iter().find(|it| it["message"]["done"] == 1);
+    let result = result.expect("a kick has ended");
+    assert_eq!(result["message"]["result"], "PERFORMED");
+    // Shoulder pitch of the left and the right arm; a walk keeps both at 1.5.
+    let is_up =
+        |joints: &Value| [2, 18].iter().any(|&it| joints["message"]["positions"][it].as_f64() < Some(-0.4));
+    let waved = exported("body/joints").into_iter().find(is_up).expect("an arm has been up");
+    let between = result["seconds"].as_f64().zip(waved["seconds"].as_f64()).map(|(end, up)| end - up);
+    assert!(between.is_some_and(|seconds| (0.2..1.0).contains(&seconds)), "{between:?}");
+}

@@ -134,15 +134,18 @@ fn upright_deed(feet: &[Isometry3<f64>; 2]) -> Deed {
 
 #[cfg(test)]
 mod tests {
+    use std::collections::BTreeMap;
+
     use super::*;
     use monas_robot::FallDetector;
 
-    use crate::motions::{Motion, sitting, stand};
+    use crate::motions::{SpecialActions, stand};
     use crate::walk::{SteppingWalk, WalkEngine, WalkVelocity};
 
     /// The skills that a motion of the joints amounts to.
     fn seen(skill: Skill, posture: Posture) -> Vec<Skill> {
-        let (mut motion, mut angles) = (Motion::of(skill, stand()).unwrap(), stand());
+        let actions = SpecialActions::of(&BTreeMap::new()).unwrap();
+        let (mut motion, mut angles) = (actions.motion(skill, stand()).unwrap(), stand());
         let mut joints = JointMotion::default();
         let (mut found, mut number) = (Vec::new(), 0);
         let mut falls = FallDetector::default();
@@ -200,7 +203,10 @@ mod tests {
         let mut joints = JointMotion::default();
         let felt = joints.observe(&stand(), &stand(), Posture::Standing);
         assert_eq!((felt.walk_x, felt.walk_y, felt.walk_turn, felt.skill_number), (0.0, 0.0, 0.0, 0));
-        assert_eq!(joints.observe(&sitting(), &sitting(), Posture::Standing).skill_number, 0);
+        let mut sitting = stand();
+        let mut motion = SpecialActions::of(&BTreeMap::new()).unwrap().sit_down(stand());
+        assert!(motion.advance(2.0, FallDetector::default(), &mut sitting));
+        assert_eq!(joints.observe(&sitting, &sitting, Posture::Standing).skill_number, 0);
     }
 
     #[test]
