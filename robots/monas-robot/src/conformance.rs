@@ -124,7 +124,7 @@ fn commands() -> [Actuators; 5] {
         Actuators { walk_x: 0.1, head_yaw: 0.5, ..still },
         Actuators { walk_x: 1e9, walk_y: -1e9, walk_turn: 1e9, head_yaw: 1e9, head_pitch: -1e9, ..still },
         Actuators { walk_x: f64::NAN, head_yaw: f64::NAN, head_pitch: f64::INFINITY, ..still },
-        Actuators { skill: -7, skill_number: u64::MAX, ..still },
+        Actuators { skill: -7, skill_number: u64::MAX, ball_speed: f64::NAN, ..still },
     ]
 }
 

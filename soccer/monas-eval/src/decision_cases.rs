@@ -57,7 +57,8 @@ pub(crate) struct Case {
 
 /// The game of all cases.
 pub(crate) fn game() -> GameState {
-    let FieldModel { length, width, goal_width, area_depth, area_width } = FieldModel::LEAGUE_2010;
+    let FieldModel { length, width, goal_width, area_depth, area_width, circle_radius } =
+        FieldModel::LEAGUE_2010;
     GameState {
         player_state: PlayerState::Playing.into(),
         field_length: length,
@@ -65,6 +66,7 @@ pub(crate) fn game() -> GameState {
         goal_width,
         area_depth,
         area_width,
+        circle_radius,
         ..GameState::default()
     }
 }

@@ -184,13 +184,16 @@ impl<B: Behaviour> DirectRobot<B> {
                 self.vision_at = now + B::VISION;
                 self.process_image();
             }
-            if now >= self.decision_at && self.memory.has_new_ball {
+            let state = self.memory.game.state();
+            if now >= self.decision_at
+                && self.memory.has_new_ball
+                && matches!(state, PlayerState::Ready | PlayerState::Playing)
+            {
                 self.decision_at = now + PERIOD;
                 self.memory.has_new_ball = false;
-                match self.memory.game.state() {
+                match state {
                     PlayerState::Ready => self.memory.take_place(),
-                    PlayerState::Playing => self.behaviour.decide(&mut self.memory),
-                    _ => {}
+                    _ => self.behaviour.decide(&mut self.memory),
                 }
             }
         }
@@ -289,6 +292,7 @@ impl<B: Behaviour> DirectRobot<B> {
         let allowed = matches!(memory.game.state(), PlayerState::Ready | PlayerState::Playing);
         let request = PendingRequest {
             wish: memory.motion,
+            ball_speed: 0.0,
             number: memory.motion_number,
             age: now.since(memory.requested_at),
         };

@@ -36,14 +36,24 @@ impl Memory {
         } else {
             Motion::Kick(Side::of(ball.bearing))
         };
-        Command { head_yaw: ball.bearing, head_pitch: 0.3 / ball.distance.max(0.3) - 0.4, motion }
+        Command {
+            head_yaw: ball.bearing,
+            head_pitch: 0.3 / ball.distance.max(0.3) - 0.4,
+            motion,
+            ..Command::default()
+        }
     }
 }
 
 /// Turns and nods until the ball comes into view.
 fn search(time: f64) -> Command {
     let nod = if time.fract() < 0.5 { 0.0 } else { 0.4 };
-    Command { head_yaw: 0.0, head_pitch: nod, motion: Motion::Walk(Velocity::new(0.0, 0.0, 0.8)) }
+    Command {
+        head_yaw: 0.0,
+        head_pitch: nod,
+        motion: Motion::Walk(Velocity::new(0.0, 0.0, 0.8)),
+        ..Command::default()
+    }
 }
 
 fn main() -> Result<(), Error> {

@@ -37,6 +37,8 @@ pub(crate) struct SimulatedBody {
     /// Time since the phase began, s.
     pub(crate) elapsed: f64,
     pub(crate) command: Command,
+    /// Desired speed of the ball after the kick under way, m/s; zero: as fast as it can.
+    pub(crate) ball_speed: f64,
     pub(crate) head_yaw: f64,
     pub(crate) head_pitch: f64,
     pub(crate) gait: WalkModel,
@@ -57,6 +59,7 @@ impl SimulatedBody {
             phase: BodyPhase::Standing,
             elapsed: 0.0,
             command: Command::default(),
+            ball_speed: 0.0,
             head_yaw: 0.0,
             head_pitch: 0.0,
             gait: WalkModel::default(),
@@ -194,7 +197,10 @@ impl SimulatedBody {
             motion => motion,
         };
         match motion {
-            Motion::Kick(foot) => self.begin_skill(BodyPhase::Kicking(foot)),
+            Motion::Kick(foot) => {
+                self.ball_speed = self.command.ball_speed;
+                self.begin_skill(BodyPhase::Kicking(foot));
+            }
             Motion::Fall(side) => return self.act(side, false),
             Motion::Dive(side) => return self.act(side, true),
             Motion::Sit => {
@@ -412,7 +418,7 @@ mod tests {
     fn a_frozen_body_keeps_still() {
         let mut body = body(Motion::Walk(Velocity::new(0.2, 0.0, 0.0)));
         run(&mut body, 1.0);
-        body.command = Command { head_yaw: 1.0, head_pitch: 0.0, motion: Motion::Freeze };
+        body.command = Command { head_yaw: 1.0, head_pitch: 0.0, motion: Motion::Freeze, ball_speed: 0.0 };
         run(&mut body, 0.01);
         assert_eq!((body.phase, body.head_yaw), (BodyPhase::Standing, 0.0));
     }

@@ -13,6 +13,8 @@ pub struct Command {
     pub head_pitch: f64,
     /// Desired motion of the rest of the body.
     pub motion: Motion,
+    /// Desired speed of the ball after a kick, m/s; zero: as fast as the body kicks it.
+    pub ball_speed: f64,
 }
 
 /// Desired motion of the legs.
@@ -53,7 +55,11 @@ impl Command {
             Motion::Walk(velocity) => velocity.is_finite(),
             _ => true,
         };
-        if finite_walk && self.head_yaw.is_finite() && self.head_pitch.is_finite() {
+        if finite_walk
+            && self.ball_speed.is_finite()
+            && self.head_yaw.is_finite()
+            && self.head_pitch.is_finite()
+        {
             return Ok(());
         }
         Err(Error::new(ErrorKind::OutOfRange, "a command holds a number that is not finite"))

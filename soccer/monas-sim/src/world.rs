@@ -319,7 +319,10 @@ impl SimulatedWorld {
         if !struck {
             return;
         }
-        let speed = (physics.kick_speed + self.kicks.normal(physics.kick_speed_noise)).max(0.0);
+        let hardest = physics.kick_speed + self.kicks.normal(physics.kick_speed_noise);
+        let wanted = self.bodies[robot].ball_speed;
+        let strength = if wanted > 0.0 { (wanted / physics.kick_speed).min(1.0) } else { 1.0 };
+        let speed = (strength * hardest).max(0.0);
         let direction = pose.heading + self.kicks.normal(physics.kick_direction_noise);
         let velocity = rotate(Vector::new(speed, 0.0), direction);
         self.arena.set_ball_velocity(velocity);

@@ -28,10 +28,8 @@ fn motion() -> impl Strategy<Value = Motion> {
 }
 
 fn command() -> impl Strategy<Value = Command> {
-    (-1e6..1e6, -1e6..1e6, motion()).prop_map(|(head_yaw, head_pitch, motion)| Command {
-        head_yaw,
-        head_pitch,
-        motion,
+    (-1e6..1e6, -1e6..1e6, motion(), -1e6..1e6).prop_map(|(head_yaw, head_pitch, motion, ball_speed)| {
+        Command { head_yaw, head_pitch, motion, ball_speed }
     })
 }
 

@@ -24,7 +24,12 @@ impl Commands {
             6 => Motion::Stand,
             _ => Command::walk(self.next() - 0.3, self.next() - 0.5, 2.0 * self.next() - 1.0).motion,
         };
-        Command { head_yaw: 4.0 * self.next() - 2.0, head_pitch: self.next() - 0.5, motion }
+        Command {
+            head_yaw: 4.0 * self.next() - 2.0,
+            head_pitch: self.next() - 0.5,
+            motion,
+            ..Command::default()
+        }
     }
 }
 

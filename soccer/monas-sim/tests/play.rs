@@ -25,11 +25,15 @@ fn a_ball_rolls_as_far_as_documented() {
 
 /// Kicks a ball that lies at `ball` in front of the robot; returns its velocity after the strike.
 fn kick(seed: u64, ball: Vector, foot: Side) -> Vector {
+    kick_with(seed, ball, Command::new(Motion::Kick(foot)))
+}
+
+fn kick_with(seed: u64, ball: Vector, command: Command) -> Vector {
     let mut world = playing(seed);
     clear_field(&mut world, &[1]);
     world.place_robot(1, Pose::default()).unwrap();
     world.place_ball(ball, Vector::zeros()).unwrap();
-    world.command(1, Command::new(Motion::Kick(foot))).unwrap();
+    world.command(1, command).unwrap();
     run(&mut world, 0.82);
     world.ball().velocity
 }
@@ -49,6 +53,20 @@ fn kicks_have_the_documented_speed_direction_and_misses() {
     let spread = mean(&|v| libm::pow(libm::atan2(v.y, v.x) - direction, 2.0)).sqrt();
     assert!(direction.abs() < 0.03, "{direction}");
     assert!((spread - physics.kick_direction_noise).abs() < 0.02, "{spread}");
+}
+
+#[test]
+fn a_kick_is_as_soft_as_it_is_wanted_and_no_harder_than_the_body_can() {
+    let speed = |seed, ball_speed| {
+        let command = Command { ball_speed, ..Command::new(Motion::Kick(Side::Left)) };
+        kick_with(seed, Vector::new(0.16, 0.05), command).norm()
+    };
+    for seed in 0..20 {
+        let hardest = speed(seed, 0.0);
+        assert_eq!(speed(seed, 50.0), hardest);
+        // The noise of the speed is a part of it.
+        assert!((speed(seed, 0.5) - 0.25 * hardest).abs() < 0.01, "seed {seed}");
+    }
 }
 
 #[test]

@@ -185,7 +185,7 @@ impl MotionRequest {
 
     /// The request as input of the motion arbiter.
     pub(crate) fn request(&self, age: Duration) -> PendingRequest {
-        PendingRequest { wish: self.desired(), number: self.number, age }
+        PendingRequest { wish: self.desired(), ball_speed: self.ball_speed, number: self.number, age }
     }
 }
 
@@ -284,6 +284,7 @@ pub fn actuators(order: &MotionCommand, (head_yaw, head_pitch): (f64, f64), ligh
         chest: lights.chest,
         left_foot: lights.left_foot,
         right_foot: lights.right_foot,
+        ball_speed: order.ball_speed,
     }
 }
 
@@ -348,7 +349,10 @@ mod tests {
             let game = GameState { goal_to_attack: attacked.into(), ..GameState::default() };
             let kind = ObjectKind::LeftPost.into();
             let sighting = Sighting { kind, colour: seen.into(), distance: 2.0, ..Sighting::default() };
-            post(&sighting, &game).map(|post| post.goal)
+            landmark(&sighting, &game).map(|seen| match seen.landmark {
+                Landmark::Post(goal, _) => goal,
+                other => panic!("{other:?} is no post"),
+            })
         };
         assert_eq!(goal(Colour::Yellow, Colour::Yellow), Some(Goal::Opponent));
         assert_eq!(goal(Colour::Blue, Colour::Yellow), Some(Goal::Own));

@@ -1,7 +1,9 @@
 //! The goalie as one activity.
 
 use monas::{Activity, Blackboard, BoxError, Progress, Topics};
-use monas_soccer::activities::motion_requests::{request_gaze, request_scan, request_skill, request_walk};
+use monas_soccer::activities::motion_requests::{
+    KickStyle, request_gaze, request_scan, request_skill, request_walk,
+};
 use monas_soccer::activities::shot::ground;
 use monas_soccer::functionality::guard::GoalPositioning;
 use monas_soccer::functionality::head::HeadController;
@@ -55,7 +57,7 @@ impl BehaviorGoalie {
                 bearing if bearing <= DIVE_FROM => MotionKind::FallLeft,
                 _ => MotionKind::DiveLeft,
             };
-            self.diving = Some(request_skill(blackboard, kind, false)?);
+            self.diving = Some(request_skill(blackboard, kind, KickStyle::default())?);
         } else {
             request_gaze(blackboard, self.head.look_at(ball.position()))?;
             if ball.approaching {

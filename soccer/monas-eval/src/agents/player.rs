@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use monas::{Activity, Blackboard, BoxError, Progress, Topics};
 use monas_soccer::activities::motion_requests::{
-    request_gaze, request_scan, request_skill, request_stand, request_walk,
+    KickStyle, request_gaze, request_scan, request_skill, request_stand, request_walk,
 };
 use monas_soccer::activities::shot::{RobotAndField, ground, others, target};
 use monas_soccer::functionality::align::Alignment;
@@ -119,7 +119,7 @@ impl BehaviorPlayer {
             return request_walk(blackboard, self.alignment.walk(ball.position(), target));
         }
         let kind = if ball.y >= 0.0 { MotionKind::KickLeft } else { MotionKind::KickRight };
-        self.kicking = Some(request_skill(blackboard, kind, false)?);
+        self.kicking = Some(request_skill(blackboard, kind, KickStyle::default())?);
         Ok(())
     }
 }

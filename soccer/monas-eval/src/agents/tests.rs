@@ -108,7 +108,9 @@ fn play<A: Activity + Default>() {
     fixture.report(MotionPhase::Fallen, 0);
     assert_eq!(fixture.decide(&search), (None, Some(DesiredMotion::Stand)), "it stands up first");
     fixture.report(MotionPhase::Standing, 0);
-    for state in [PlayerState::Set, PlayerState::Ready, PlayerState::Penalized] {
+    fixture.publish(topics::GAME_STATE, GameState { player_state: PlayerState::Ready.into(), ..game() });
+    assert!(matches!(fixture.decide(&search).1, Some(DesiredMotion::Walk(_))), "it walks to its place");
+    for state in [PlayerState::Set, PlayerState::Penalized] {
         fixture.publish(topics::GAME_STATE, GameState { player_state: state.into(), ..game() });
         assert_eq!(fixture.decide(&search), (None, None), "it waits for play");
     }

@@ -108,16 +108,20 @@ fn player_plays() {
     play::<DirectPlayer>(10);
 }
 
-/// Stands up first, decides only during play, ten times a second and only on new estimates of the
-/// ball, and commands the body ten times a second all the time.
+/// Stands up first, walks to its place in READY, decides only during play, ten times a second and
+/// only on new estimates of the ball, and commands the body ten times a second all the time.
 fn play<B: Behaviour + Default>(images_a_second: usize) {
     let mut fixture = Fixture::<B>::new();
     fixture.percepts.sensors.posture = Posture::Fallen.into();
     fixture.announce(GamePhase::Playing);
     assert_eq!(fixture.run(1000), (0, 0), "it stands up first");
     fixture.percepts.sensors.posture = Posture::Standing.into();
+    fixture.announce(GamePhase::Ready);
+    assert_ne!(fixture.run(1000), (0, 0), "it walks to its place");
+    assert!(matches!(fixture.robot.memory.motion, DesiredMotion::Walk(_)));
     fixture.announce(GamePhase::Set);
-    assert_eq!(fixture.run(1000), (0, 0), "it waits for play");
+    fixture.run(100);
+    assert_eq!(fixture.run(1000).1, 0, "it waits for play");
     fixture.announce(GamePhase::Playing);
     fixture.commands.store(0, Ordering::Relaxed);
     let (images, decisions) = fixture.run(2000);
@@ -125,7 +129,7 @@ fn play<B: Behaviour + Default>(images_a_second: usize) {
     assert!(decisions.abs_diff(2 * images_a_second) <= 1, "{decisions} decisions");
     assert!(matches!(fixture.robot.memory.gaze, GazeRequest::Scan), "without a ball it searches");
     assert!(fixture.commands.load(Ordering::Relaxed).abs_diff(20) <= 1);
-    fixture.announce(GamePhase::Set);
+    fixture.announce(GamePhase::Finished);
     fixture.run(100);
     assert_eq!(fixture.run(1000), (0, 0));
 }

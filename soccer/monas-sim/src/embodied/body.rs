@@ -117,6 +117,7 @@ impl FieldBody {
             head_yaw: limits.head_yaw.clamp(head_yaw),
             head_pitch: limits.head_pitch.clamp(head_pitch),
             motion: self.skill.motion().unwrap_or(legs),
+            ball_speed: self.skill.ball_speed(),
         };
         self.pitch.lock().world.command(self.robot, command).map_err(refused)
     }
@@ -357,7 +358,8 @@ mod tests {
             let pitch = SharedField::new(SimulatedWorld::new(setup).unwrap());
             let mut body = pitch.body(1).unwrap();
             let seen = first_percepts(&mut body, &pitch).sightings.unwrap().objects;
-            let seen = seen.iter().filter(|seen| seen.kind() != ObjectKind::Robot);
+            let coloured = [ObjectKind::Ball, ObjectKind::LeftPost, ObjectKind::RightPost];
+            let seen = seen.iter().filter(|seen| coloured.contains(&seen.kind()));
             let mut colours: Vec<i32> = seen.map(|seen| seen.colour).collect();
             colours.sort_unstable();
             colours.dedup();

@@ -20,6 +20,7 @@ pub(super) struct SkillTrack {
 #[derive(Clone, Copy, Debug)]
 struct ActiveSkill {
     motion: Motion,
+    ball_speed: f64,
     begun: bool,
     readings: u32,
 }
@@ -33,7 +34,9 @@ impl SkillTrack {
         self.number = actuators.skill_number;
         match motion_of(actuators.skill()) {
             Some(motion) if self.active.is_none() => {
-                self.active = Some(ActiveSkill { motion, begun: false, readings: 0 });
+                // What is not a number is zero.
+                let ball_speed = actuators.ball_speed.max(0.0).min(f64::MAX);
+                self.active = Some(ActiveSkill { motion, ball_speed, begun: false, readings: 0 });
             }
             // No skill, or one requested while another is active: it ends at once.
             _ if self.active.is_none() => self.end(SkillResult::Refused),
@@ -68,6 +71,11 @@ impl SkillTrack {
     /// The motion of the legs for the active skill, if any.
     pub(super) fn motion(&self) -> Option<Motion> {
         self.active.map(|active| active.motion)
+    }
+
+    /// Desired speed of the ball after the active kick, m/s; zero: as fast as the body kicks it.
+    pub(super) fn ball_speed(&self) -> f64 {
+        self.active.map_or(0.0, |active| active.ball_speed)
     }
 
     /// The number of the last skill that has ended, and how.

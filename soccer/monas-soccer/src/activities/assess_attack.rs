@@ -200,7 +200,7 @@ mod tests {
     #[test]
     fn the_nearer_one_is_the_center() {
         let mate = TeamReport { number: 3, x: 0.5, y: 1.0, ..far() };
-        let attack = judged(ball(1.0, 0.0), &[mate], &[]);
+        let attack = judged(ball(0.9, 0.0), &[mate], &[]);
         assert_eq!(attack.part(), AttackPart::Center);
         assert!(attack.ball_is_free && attack.center_is_closest && attack.center_for_is_farthest);
         assert_eq!((attack.mate_x, attack.mate_y), (0.5, 1.0));

@@ -15,7 +15,7 @@ use crate::functionality::geometry::angle_of;
 use crate::functionality::guard::GoalPositioning;
 use crate::functionality::head::HeadController;
 use crate::functionality::walk::Walk;
-use crate::{Ball, topics};
+use crate::{AttackPart, Ball, topics};
 
 /// Polling interval; the activity is also called as soon as the ball is seen.
 pub(super) const LOOK: Duration = Duration::from_millis(100);
@@ -87,7 +87,7 @@ impl BringBall {
 }
 
 /// The target of a pass: the partner in the attack. In the robot's frame.
-fn mate(blackboard: &Blackboard, ball: &Ball, ground: Option<&RobotAndField>) -> Point2<f64> {
+pub(super) fn mate(blackboard: &Blackboard, ball: &Ball, ground: Option<&RobotAndField>) -> Point2<f64> {
     let attack = blackboard.read(topics::ATTACK);
     match (attack, ground) {
         (Some(attack), Some(ground)) => {
@@ -98,7 +98,7 @@ fn mate(blackboard: &Blackboard, ball: &Ball, ground: Option<&RobotAndField>) ->
 }
 
 macro_rules! bring_ball {
-    ($($(#[$documentation:meta])* $name:ident: $target:path, [$($topic:ident),*];)*) => {$(
+    ($($(#[$documentation:meta])* $name:ident: $target:path, $part:ident;)*) => {$(
         $(#[$documentation])*
         #[derive(Clone, Copy, Debug, Default)]
         pub struct $name {
@@ -107,7 +107,10 @@ macro_rules! bring_ball {
 
         impl Activity for $name {
             fn execute(&mut self, blackboard: &mut Blackboard) -> Result<Progress, BoxError> {
-                let progress = self.bring.advance(blackboard, $target)?;
+                let attack = blackboard.read(topics::ATTACK);
+                let has_part = attack.is_none_or(|attack| attack.part() == AttackPart::$part);
+                let progress =
+                    if has_part { self.bring.advance(blackboard, $target)? } else { Progress::Done };
                 if progress == Progress::Done {
                     self.bring.since = None;
                 }
@@ -120,7 +123,7 @@ macro_rules! bring_ball {
 
             fn topics(&self) -> Topics {
                 let topics = Topics::declared().ends_on(topics::BALL).reads(topics::GAME_STATE).reads(topics::POSE);
-                let topics = topics.reads(topics::ROBOTS).reads(topics::MOTION)$(.reads(topics::$topic))*;
+                let topics = topics.reads(topics::ROBOTS).reads(topics::MOTION).reads(topics::ATTACK);
                 topics.publishes(topics::MOTION).publishes(topics::HEAD)
             }
         }
@@ -131,11 +134,13 @@ macro_rules! bring_ball {
 
 bring_ball! {
     /// Walks to the ball and lines up for a pass to the partner in the attack. Ends when the ball
-    /// lies in front of a foot or in the own goal area, is lost, or after 25 s; it never kicks.
-    BringBallToPass: mate, [ATTACK];
+    /// lies in front of a foot or in the own goal area, is lost, or after 25 s, and when the player
+    /// is no longer the center; it never kicks.
+    BringBallToPass: mate, Center;
     /// Walks to the ball and lines up for a shot at the widest gap in the goal. Ends when the ball
-    /// lies in front of a foot or in the own goal area, is lost, or after 25 s; it never kicks.
-    BringBallToShoot: target, [];
+    /// lies in front of a foot or in the own goal area, is lost, or after 25 s, and when the player
+    /// is no longer the partner; it never kicks.
+    BringBallToShoot: target, CenterFor;
 }
 
 #[cfg(test)]
@@ -167,14 +172,28 @@ mod tests {
         assert_eq!(there.latest(topics::MOTION), None, "it never kicks");
     }
 
+    fn center() -> Attack {
+        Attack { part: AttackPart::Center.into(), ..Attack::default() }
+    }
+
+    #[test]
+    fn it_ends_with_its_part() {
+        let mut stage = stage((0.22, 0.05));
+        stage.publish(topics::ATTACK, Attack { mate_x: 1.5, ..center() });
+        assert!(!stage.run(&mut BringBallToPass::default()));
+        assert!(stage.run(&mut BringBallToShoot::default()));
+        stage.publish(topics::ATTACK, Attack::default());
+        assert!(stage.run(&mut BringBallToPass::default()));
+    }
+
     #[test]
     fn for_a_pass_it_has_to_face_the_mate() {
         let mut activity = BringBallToPass::default();
         let mut stage = stage((0.15, 0.05));
-        stage.publish(topics::ATTACK, Attack { mate_x: 1.0, mate_y: 1.5, ..Attack::default() });
+        stage.publish(topics::ATTACK, Attack { mate_x: 1.0, mate_y: 1.5, ..center() });
         assert!(!stage.run(&mut activity));
         assert!(stage.latest(topics::MOTION).unwrap().wz > 0.3, "it turns to where the mate is");
-        stage.publish(topics::ATTACK, Attack { mate_x: 1.5, mate_y: 0.1, ..Attack::default() });
+        stage.publish(topics::ATTACK, Attack { mate_x: 1.5, mate_y: 0.1, ..center() });
         assert!(stage.run(&mut activity));
     }
 

@@ -28,15 +28,31 @@ pub fn request_walk(blackboard: &mut Blackboard, walk: Walk) -> Result<(), BoxEr
     )
 }
 
-/// Requests a one-time motion; the returned number identifies its completion.
+/// What a kick is for, and how hard it is.
+#[derive(Clone, Copy, PartialEq, Default, Debug)]
+pub struct KickStyle {
+    /// Whether it is a pass to a team mate.
+    pub is_pass: bool,
+    /// Desired speed of the ball, m/s; zero: as fast as the body kicks it.
+    pub ball_speed: f64,
+}
+
+/// Requests a one-time motion; the returned number identifies its completion. Motions other than
+/// kicks have the default style.
 ///
 /// # Errors
 /// The calling activity does not declare the topic.
-pub fn request_skill(blackboard: &mut Blackboard, kind: MotionKind, is_pass: bool) -> Result<u64, BoxError> {
+pub fn request_skill(
+    blackboard: &mut Blackboard,
+    kind: MotionKind,
+    style: KickStyle,
+) -> Result<u64, BoxError> {
     let done = blackboard.read(topics::MOTION_STATE).map_or(0, |state| state.done);
     let number = last_number(blackboard).max(done) + 1;
     tracing::info!(motion = kind.as_str_name(), "motion requested");
-    publish(blackboard, MotionRequest { kind: kind.into(), number, is_pass, ..MotionRequest::default() })?;
+    let KickStyle { is_pass, ball_speed } = style;
+    let kind = kind.into();
+    publish(blackboard, MotionRequest { kind, number, is_pass, ball_speed, ..MotionRequest::default() })?;
     Ok(number)
 }
 

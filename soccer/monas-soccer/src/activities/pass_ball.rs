@@ -6,15 +6,17 @@ use monas::{Activity, Blackboard, BoxError, Progress, Topics};
 use monas_robot::Skill;
 use narukom::Timestamp;
 
-use super::bring_ball::LOOK;
-use super::motion_requests::{request_gaze, request_walk};
+use super::bring_ball::{LOOK, mate};
+use super::motion_requests::{KickStyle, request_gaze, request_walk};
+use super::shot::ground;
 use super::skills::{RunningSkill, perform};
+use crate::functionality::ball_filter::BallModel;
 use crate::functionality::head::HeadController;
 use crate::functionality::walk::{Walk, turn_to};
 use crate::{MotionKind, topics};
 
-/// Kicks the ball ahead with the foot in front of which it lies, and then watches the outcome for a
-/// while.
+/// Kicks the ball ahead with the foot in front of which it lies, so that it arrives slowly at the
+/// partner in the attack, and then watches the outcome for a while.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct PassBall {
     kick: Option<MotionKind>,
@@ -25,6 +27,8 @@ pub struct PassBall {
 
 /// How long the outcome of a pass is watched.
 const WATCH: Duration = Duration::from_millis(500);
+/// Speed at which a pass arrives at the partner, m/s.
+const ARRIVAL: f64 = 0.55;
 
 impl Activity for PassBall {
     fn execute(&mut self, blackboard: &mut Blackboard) -> Result<Progress, BoxError> {
@@ -53,9 +57,18 @@ impl Activity for PassBall {
     fn topics(&self) -> Topics {
         let topics =
             Topics::declared().reads(topics::BALL).reads(topics::MOTION).ends_on(topics::MOTION_STATE);
+        let topics = topics.reads(topics::ATTACK).reads(topics::GAME_STATE).reads(topics::POSE);
         let topics = topics.publishes(topics::MOTION).publishes(topics::HEAD);
         topics.performs(Skill::KickLeft.as_str_name()).performs(Skill::KickRight.as_str_name())
     }
+}
+
+/// The speed of a ball that rolls to the partner and arrives there slowly, m/s; zero, which is the
+/// hardest kick, without a ball.
+fn pass_speed(blackboard: &Blackboard) -> f64 {
+    let Some(ball) = blackboard.read(topics::BALL).copied() else { return 0.0 };
+    let way = (mate(blackboard, &ball, ground(blackboard).as_ref()) - ball.position()).norm();
+    BallModel::default().speed_for(way, ARRIVAL)
 }
 
 impl PassBall {
@@ -67,7 +80,8 @@ impl PassBall {
         let is_left = blackboard.read(topics::BALL).is_some_and(|ball| ball.y >= 0.0);
         let foot = if is_left { MotionKind::KickLeft } else { MotionKind::KickRight };
         let kick = *self.kick.get_or_insert(foot);
-        perform(&mut self.under_way, kick, true, blackboard)
+        let style = KickStyle { is_pass: true, ball_speed: pass_speed(blackboard) };
+        perform(&mut self.under_way, kick, style, blackboard)
     }
 
     /// Stands facing the ball.
@@ -86,7 +100,25 @@ monas::activity!(PassBall as "passBall");
 mod tests {
     use super::*;
     use crate::activities::activity_fixture::{ActivityFixture, TICK};
-    use crate::{Ball, HeadMode, MotionState};
+    use crate::{Attack, Ball, GameState, HeadMode, MotionState, Pose};
+
+    #[test]
+    fn a_pass_is_as_hard_as_the_way_to_the_partner_is_long() {
+        let speed_to = |mate_x: f64| {
+            let (mut stage, mut activity) = (ActivityFixture::new(), PassBall::default());
+            stage.publish(topics::BALL, Ball { x: 0.15, y: 0.05, ..Ball::default() });
+            let game =
+                GameState { field_length: 6.0, field_width: 4.0, goal_width: 1.4, ..GameState::default() };
+            stage.publish(topics::GAME_STATE, game).publish(topics::POSE, Pose::default());
+            stage.publish(topics::ATTACK, Attack { mate_x, ..Attack::default() });
+            stage.run(&mut activity);
+            let wanted = stage.latest(topics::MOTION).unwrap();
+            assert!(wanted.is_pass);
+            wanted.ball_speed
+        };
+        let (near, far) = (speed_to(1.15), speed_to(2.65));
+        assert!((0.8..1.1).contains(&near) && (1.1..1.5).contains(&far), "{near} {far}");
+    }
 
     #[test]
     fn it_kicks_with_the_foot_at_the_ball_and_then_watches() {

@@ -1,4 +1,4 @@
-//! One-time motions: kicks, falls and dives.
+//! One-time motions: falls and dives, and what they share with kicks.
 
 use std::time::Duration;
 
@@ -6,7 +6,7 @@ use monas::{Activity, Blackboard, BoxError, Progress, Topics};
 use monas_robot::Skill;
 use narukom::Timestamp;
 
-use super::motion_requests::request_skill;
+use super::motion_requests::{KickStyle, request_skill};
 use crate::{MotionKind, topics};
 
 /// Polling interval for the end of a motion; a message that reports it is handled at once.
@@ -21,12 +21,12 @@ pub(super) type RunningSkill = Option<(u64, Timestamp)>;
 pub(super) fn perform(
     under_way: &mut RunningSkill,
     kind: MotionKind,
-    is_pass: bool,
+    style: KickStyle,
     blackboard: &mut Blackboard,
 ) -> Result<Progress, BoxError> {
     let now = blackboard.now();
     let Some((number, since)) = *under_way else {
-        *under_way = Some((request_skill(blackboard, kind, is_pass)?, now));
+        *under_way = Some((request_skill(blackboard, kind, style)?, now));
         return Ok(Progress::after(LOOK));
     };
     let over = blackboard.read(topics::MOTION_STATE).is_some_and(|state| state.done >= number);
@@ -57,7 +57,7 @@ macro_rules! skill {
             }
 
             fn execute(&mut self, blackboard: &mut Blackboard) -> Result<Progress, BoxError> {
-                perform(&mut self.under_way, MotionKind::$kind, false, blackboard)
+                perform(&mut self.under_way, MotionKind::$kind, KickStyle::default(), blackboard)
             }
 
             fn stop(&mut self, _: &mut Blackboard) {
@@ -75,10 +75,6 @@ macro_rules! skill {
 }
 
 skill! {
-    /// Kicks with the left foot, done when the robot stands again.
-    LeftKick: KickLeft;
-    /// Kicks with the right foot, done when the robot stands again.
-    RightKick: KickRight;
     /// Drops to the left, done when the robot has got up.
     LeftFall: FallLeft;
     /// Drops to the right, done when the robot has got up.
@@ -101,9 +97,7 @@ mod tests {
 
     #[test]
     fn each_asks_for_its_own_motion() {
-        let activities: [(&mut dyn Activity, MotionKind); 6] = [
-            (&mut LeftKick::default(), MotionKind::KickLeft),
-            (&mut RightKick::default(), MotionKind::KickRight),
+        let activities: [(&mut dyn Activity, MotionKind); 4] = [
             (&mut LeftFall::default(), MotionKind::FallLeft),
             (&mut RightFall::default(), MotionKind::FallRight),
             (&mut LeftDive::default(), MotionKind::DiveLeft),
@@ -118,7 +112,7 @@ mod tests {
 
     #[test]
     fn it_lasts_until_its_motion_ends_and_can_be_requested_again() {
-        let (mut stage, mut activity) = (ActivityFixture::new(), LeftKick::default());
+        let (mut stage, mut activity) = (ActivityFixture::new(), LeftDive::default());
         stage.publish(topics::MOTION_STATE, state(6));
         assert!(!stage.run(&mut activity));
         assert_eq!(stage.latest(topics::MOTION).unwrap().number, 7, "beyond what was ever done");
@@ -140,7 +134,7 @@ mod tests {
 
     #[test]
     fn a_stopped_agent_restarts() {
-        let (mut stage, mut activity) = (ActivityFixture::new(), LeftKick::default());
+        let (mut stage, mut activity) = (ActivityFixture::new(), LeftDive::default());
         stage.run(&mut activity);
         activity.under_way = None;
         stage.run(&mut activity);

@@ -29,9 +29,12 @@ const SHOT: f64 = 1.0;
 /// By how much an opponent must be nearer to the ball than the team to have it, metres: reports of
 /// mates that walk to the ball are old.
 const HAS: f64 = 0.1;
-/// Distance from the goal beyond which no shot is expected to score, metres: of a hundred shots from
-/// 2 m and more a goalie lets one in.
-const SHOT_LENGTH: f64 = 2.2;
+/// Distance from the goal beyond which a pass is better than a shot, metres: from 2 m and more a
+/// goalie lets in a few of a hundred shots.
+const SHOT_LENGTH: f64 = 1.6;
+/// Distance from the ball within which the center has its part, metres. A player that is farther
+/// away walks to the ball as it would alone.
+const BEGIN: f64 = 1.0;
 /// Prediction time for a rolling ball, seconds.
 const FORESIGHT: f64 = 0.4;
 /// Way that turning by a radian costs, metres.
@@ -143,7 +146,7 @@ pub fn evaluate(scene: &AttackSituation<'_>) -> AttackState {
     let (part, mate) = match (std::ptr::eq(center, &scene.own), std::ptr::eq(center_for, &scene.own)) {
         // The part of the center ends with its pass.
         (true, _) if is_passed => (None, None),
-        _ if !is_passed && !pays => (None, None),
+        _ if !is_passed && (!pays || center.ball_distance > BEGIN) => (None, None),
         (true, _) if is_blocked => (None, None),
         (true, _) => (Some(AttackRole::Center), Some(center_for.place)),
         (_, true) if is_passed && is_covered => (None, None),
@@ -166,8 +169,8 @@ fn players<'a>(scene: &'a AttackSituation<'_>) -> impl Iterator<Item = &'a Attac
     scene.mates.iter().chain([&scene.own])
 }
 
-/// The center and its partner: the players nearest to and farthest from the ball. During a pass:
-/// the player that has passed, and the nearest of the others.
+/// The center and its partner: the player with the shortest way to the ball and the one that is
+/// farthest from it. During a pass: the player that has passed, and the nearest of the others.
 fn parts<'a>(scene: &'a AttackSituation<'_>) -> Option<(&'a AttackPlayer, &'a AttackPlayer)> {
     let but = |but: &'a AttackPlayer| players(scene).filter(move |it| !std::ptr::eq(*it, but));
     let by_distance = |a: &&AttackPlayer, b: &&AttackPlayer| a.ball_distance.total_cmp(&b.ball_distance);
@@ -175,7 +178,7 @@ fn parts<'a>(scene: &'a AttackSituation<'_>) -> Option<(&'a AttackPlayer, &'a At
     if let Some(passer) = passers.min_by(|a, b| a.since_pass.total_cmp(&b.since_pass)) {
         return Some((passer, but(passer).min_by(by_distance)?));
     }
-    let nearest = players(scene).min_by(by_distance)?;
+    let nearest = players(scene).min_by(|a, b| cost(scene, a).total_cmp(&cost(scene, b)))?;
     Some((nearest, but(nearest).max_by(by_distance)?))
 }
 

@@ -30,6 +30,14 @@ pub struct BallModel {
     pub first_speed: f64,
 }
 
+impl BallModel {
+    /// The speed at which a ball has to start, m/s, to arrive after a way in metres at a speed in
+    /// m/s. Zero, to be taken as the fastest, for no way at all.
+    pub fn speed_for(&self, way: f64, arrival: f64) -> f64 {
+        libm::sqrt((2.0 * self.rolling_deceleration * way + arrival * arrival).max(0.0))
+    }
+}
+
 impl Default for BallModel {
     /// The carpet and the orange ball of the league in 2010.
     fn default() -> BallModel {

@@ -46,6 +46,8 @@ pub enum DesiredMotion {
 pub struct PendingRequest {
     /// The requested motion.
     pub wish: DesiredMotion,
+    /// Desired speed of the ball after a kick, m/s; zero: as fast as the body kicks it.
+    pub ball_speed: f64,
     /// Counts the requested skills.
     pub number: u64,
     /// How old the request is.
@@ -96,6 +98,8 @@ pub struct MotionCommand {
     pub skill: Option<Skill>,
     /// Its number.
     pub skill_number: u64,
+    /// Desired speed of the ball after a kick, m/s; zero: as fast as the body kicks it.
+    pub ball_speed: f64,
 }
 
 /// Age at which a request expires.
@@ -120,7 +124,7 @@ pub struct MotionArbiter {
 impl MotionArbiter {
     /// An arbiter for a body with a gait.
     pub fn new(gait: GaitLimits) -> MotionArbiter {
-        let order = MotionCommand { walk: Walk::STILL, skill: None, skill_number: 0 };
+        let order = MotionCommand { walk: Walk::STILL, skill: None, skill_number: 0, ball_speed: 0.0 };
         MotionArbiter { gait, order, under_way: None, pending: None, done: 0, end: None }
     }
 
@@ -156,7 +160,7 @@ impl MotionArbiter {
         self.order.walk = Walk::STILL;
         self.finish_skill(now, report);
         if self.under_way.is_none() && report.posture == Posture::Fallen {
-            self.begin(now, Skill::StandUp, report);
+            self.begin(now, Skill::StandUp, 0.0, report);
         }
         if let Some(request) = request {
             self.serve(now, report, request, allowed);
@@ -191,7 +195,7 @@ impl MotionArbiter {
             DesiredMotion::Skill(skill) if self.is_new(request.number) => match heard && ready {
                 true => {
                     self.pending = Some((request.number, None));
-                    self.begin(now, skill, report);
+                    self.begin(now, skill, request.ball_speed, report);
                 }
                 false => (self.done, self.end) = (request.number, Some(SkillEnd::Refused)),
             },
@@ -205,7 +209,8 @@ impl MotionArbiter {
     }
 
     /// Chooses a number that is new to the body, even if another arbiter commanded it before.
-    fn begin(&mut self, now: Timestamp, skill: Skill, report: BodyReport) {
+    fn begin(&mut self, now: Timestamp, skill: Skill, ball_speed: f64, report: BodyReport) {
+        self.order.ball_speed = ball_speed;
         self.order.skill = Some(skill);
         self.order.skill_number = self.order.skill_number.max(report.skill_done) + 1;
         self.under_way = Some(now);
@@ -228,7 +233,7 @@ mod tests {
     }
 
     fn request(wish: DesiredMotion, number: u64) -> Option<PendingRequest> {
-        Some(PendingRequest { wish, number, age: Duration::from_millis(100) })
+        Some(PendingRequest { wish, ball_speed: 0.0, number, age: Duration::from_millis(100) })
     }
 
     fn ahead() -> DesiredMotion {
@@ -248,7 +253,7 @@ mod tests {
     fn without_leave_or_a_fresh_request_it_stands_still() {
         let mut motion = MotionArbiter::new(GAIT);
         assert_eq!(motion.step(at(0), UPRIGHT, request(ahead(), 0), false).walk, Walk::STILL);
-        let old = PendingRequest { wish: ahead(), number: 0, age: Duration::from_millis(501) };
+        let old = PendingRequest { age: Duration::from_millis(501), ..request(ahead(), 0).unwrap() };
         assert_eq!(motion.step(at(100), UPRIGHT, Some(old), true).walk, Walk::STILL);
         assert_eq!(motion.step(at(200), UPRIGHT, None, true).walk, Walk::STILL);
     }
@@ -267,6 +272,17 @@ mod tests {
         assert_eq!((motion.done(), motion.is_busy()), (1, false));
         assert_eq!(motion.end(), Some(SkillEnd::Performed));
         assert_eq!(motion.step(at(1700), over, request(ahead(), 1), true).walk.ahead, 0.2);
+    }
+
+    #[test]
+    fn a_kick_is_as_soft_as_it_is_requested() {
+        let kick = request(DesiredMotion::Skill(Skill::KickLeft), 1).unwrap();
+        let mut motion = MotionArbiter::new(GAIT);
+        let order = motion.step(at(0), UPRIGHT, Some(PendingRequest { ball_speed: 0.8, ..kick }), true);
+        assert_eq!((order.skill, order.ball_speed), (Some(Skill::KickLeft), 0.8));
+        let next = PendingRequest { number: 2, ..kick };
+        let order = motion.step(at(2000), report(Posture::Upright, 1), Some(next), true);
+        assert_eq!((order.skill_number, order.ball_speed), (2, 0.0));
     }
 
     #[test]
