@@ -4,8 +4,9 @@
 //! cargo run --release -p monas-rcsssmj --example kick_table [-- [--robot K1] [POLICY]]
 //! ```
 //!
-//! The program `rcssservermj` has to be in PATH. A T1 kicks, or a K1. The ball lies at the place for the kick, or beside
-//! it by chance. With a file of weights the robot stands by the policy before the kick.
+//! The program `rcssservermj` has to be in PATH. A T1 kicks, or a K1. The ball lies at the place
+//! for the kick, or beside it by chance. With a file of weights the robot stands by the policy
+//! before the kick.
 
 use std::collections::BTreeMap;
 

@@ -4,11 +4,11 @@
 //! cargo run --release -p monas-rcsssmj --example walk_table [-- [--robot K1] [POLICY]]
 //! ```
 //!
-//! The program `rcssservermj` has to be in PATH. A T1 walks, or a K1. With a file of weights the policy walks, without
-//! one the own walk. Each row is of several trials of twelve seconds, of which the first two are
-//! for the start; they begin after stands of different lengths. In the last row the velocity
-//! changes every two seconds, with stops between. True speeds are those that the server says, felt
-//! ones those of the odometry.
+//! The program `rcssservermj` has to be in PATH. A T1 walks, or a K1. With a file of weights the
+//! policy walks, without one the own walk. Each row is of several trials of twelve seconds, of
+//! which the first two are for the start; they begin after stands of different lengths. In the last
+//! row the velocity changes every two seconds, with stops between. True speeds are those that the
+//! server says, felt ones those of the odometry.
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,4 @@
-//! What the robots of the server differ in: joints, sizes, masses, and the numbers of their motions.
+//! What the robots of the server differ in: joints, lengths, masses, and numbers of their motions.
 
 use std::time::Duration;
 

@@ -12,10 +12,11 @@
 //! The commands in the plane, which all bodies have, become commands to motors here. A
 //! [`WalkEngine`](walk::WalkEngine) turns velocities into steps: [`SineWalk`] is the project's own,
 //! [`PolicyWalk`] a network for the T1 whose weights are loaded from a file. A [`Kick`] is a motion
-//! from a stand. The example `motion_search` finds the numbers of walk and kick. Odometry follows from the
-//! foot on the ground by the [`kinematics`] of the legs and from the gyroscope, the inclination of
-//! the torso from gyroscope and accelerometer ([`Inertia`]). The true pose that the server sends is
-//! used to notice that the referee has placed the robot, and for nothing else that players see.
+//! from a stand. The example `motion_search` finds the numbers of walk and kick. Odometry follows
+//! from the foot on the ground by the [`kinematics`] of the legs and from the gyroscope, the
+//! inclination of the torso from gyroscope and accelerometer ([`Inertia`]). The true pose that the
+//! server sends is used to notice that the referee has placed the robot, and for nothing else that
+//! players see.
 //!
 //! # Limits
 //!

@@ -188,7 +188,8 @@ pub struct Sound {
 }
 
 impl Percept {
-    /// Reads a message to a robot. An unknown percept is passed over: robots differ in what they perceive.
+    /// Reads a message to a robot. An unknown percept is passed over: robots differ in what they
+    /// perceive.
     ///
     /// # Errors
     /// The parentheses are not balanced, or a percept does not have the form of its kind. What was
