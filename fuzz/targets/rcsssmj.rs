@@ -2,6 +2,7 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
+use monas_rcsssmj::T1;
 use monas_rcsssmj::expression::Items;
 use monas_rcsssmj::frame::FrameReader;
 use monas_rcsssmj::monitor::MonitoredGame;
@@ -9,7 +10,7 @@ use monas_rcsssmj::percept::Percept;
 
 fuzz_target!(|data: &[u8]| {
     let balanced = Items::of(data).is_ok();
-    match Percept::default().decode(data) {
+    match Percept::default().decode(data, &T1) {
         Ok(()) => assert!(balanced),
         Err(error) => assert!(!error.to_string().is_empty()),
     }

@@ -2,7 +2,7 @@
 //!
 //! They walk by the project's own walk, or by the policy whose weights `MONAS_T1_POLICY` names. How
 //! often the attacker scores is counted with `MONAS_T1_RUNS=10 cargo test -p monas-tests --test
-//! rcsssmj scores -- --nocapture`.
+//! rcsssmj scores -- --nocapture`, and `MONAS_K1_RUNS=10` counts for a K1.
 
 #![allow(clippy::unwrap_used)] // tests may panic
 
@@ -21,6 +21,7 @@ use rand_pcg::Pcg32;
 use yase::Source;
 
 const ATTACKER: &str = "../config/rcsssmj.xml";
+const K1_ATTACKER: &str = "../config/rcsssmj_k1.xml";
 const GOALIE: &str = "../config/rcsssmj_goalie.xml";
 /// The longest run, s.
 const LONGEST: u64 = 300;
@@ -159,7 +160,17 @@ fn the_attacker_brings_the_ball_towards_the_goal_on_the_soccer_server() {
 
 #[test]
 fn the_attacker_scores_on_the_soccer_server() {
-    let Ok(runs) = std::env::var("MONAS_T1_RUNS") else { return };
+    scores(ATTACKER, "MONAS_T1_RUNS");
+}
+
+#[test]
+fn a_k1_scores_on_the_soccer_server() {
+    scores(K1_ATTACKER, "MONAS_K1_RUNS");
+}
+
+/// Counts the runs with a goal, of as many as a variable of the environment says.
+fn scores(configuration: &str, variable: &str) {
+    let Ok(runs) = std::env::var(variable) else { return };
     if !has_server() {
         return;
     }
@@ -169,7 +180,7 @@ fn the_attacker_scores_on_the_soccer_server() {
         let mut chance = Pcg32::seed_from_u64(seed);
         let mut share = || f64::from(chance.next_u32()) / f64::from(u32::MAX);
         let start = format!("start_x=\"{:.2}\" start_y=\"{:.2}\"", -1.5 - 2.0 * share(), 6.0 * share() - 3.0);
-        let goal = Run::new(ATTACKER, seed, &start).first_goal();
+        let goal = Run::new(configuration, seed, &start).first_goal();
         println!("with {start}: {goal:?}");
         goal
     };

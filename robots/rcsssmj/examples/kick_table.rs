@@ -1,16 +1,17 @@
 //! Measures the kick on the server: how fast and how far the ball rolls, and where to.
 //!
 //! ```text
-//! cargo run --release -p monas-rcsssmj --example kick_table [-- POLICY]
+//! cargo run --release -p monas-rcsssmj --example kick_table [-- [--robot K1] [POLICY]]
 //! ```
 //!
-//! The program `rcssservermj` has to be in PATH. The ball lies at the place for the kick, or beside
-//! it by chance. With a file of weights the robot stands by the policy before the kick.
+//! The program `rcssservermj` has to be in PATH. A T1 kicks, or a K1. The ball lies at the place
+//! for the kick, or beside it by chance. With a file of weights the robot stands by the policy
+//! before the kick.
 
 use std::collections::BTreeMap;
 
 use monas_rcsssmj::monitor::Command;
-use monas_rcsssmj::{KickParameters, T1};
+use monas_rcsssmj::{Booster, KickParameters};
 use monas_robot::{Actuators, BodySite, ObjectKind, Percepts, Robot, Skill};
 use narukom::Timestamp;
 use rand_core::{Rng, SeedableRng};
@@ -20,9 +21,8 @@ use rand_pcg::Pcg32;
 const KICKS: u32 = 10;
 /// By how much the ball lies beside the place for the kick, m, one row for each.
 const BESIDE: [f64; 4] = [0.0, 0.02, 0.04, 0.06];
-/// Where the robot stands, m; the middle between its hips is ahead of its torso.
-const PLACE: [f64; 3] = [-12.0, 0.0, 0.68];
-const HIPS: f64 = 0.0625;
+/// Where the robot stands, m.
+const PLACE: [f64; 2] = [-12.0, 0.0];
 /// Cycles before a kick, and those in which the ball rolls after it.
 const STAND: u32 = 100;
 const ROLLING: u32 = 250;
@@ -30,8 +30,10 @@ const ROLLING: u32 = 250;
 const SPAN: f64 = 0.2;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let policy = std::env::args().nth(1);
-    let options = policy.map(|file| ("policy".to_owned(), file)).into_iter();
+    let mut arguments = std::env::args().skip(1).peekable();
+    let robot = arguments.next_if_eq("--robot").and_then(|_| arguments.next());
+    let policy = arguments.next().map(|file| ("policy".to_owned(), file));
+    let options = robot.map(|name| ("robot".to_owned(), name)).into_iter().chain(policy);
     let site = BodySite { options: options.collect::<BTreeMap<_, _>>(), ..BodySite::default() };
     let body = monas_rcsssmj::open(&site)?;
     let mut table = Table { body, cycle: 0, skill: 0, percepts: Percepts::default() };
@@ -71,7 +73,7 @@ struct Kicked {
 }
 
 struct Table {
-    body: T1,
+    body: Booster,
     cycle: u64,
     skill: u64,
     percepts: Percepts,
@@ -93,15 +95,19 @@ impl Table {
         let ([x, y, _], heading) = (self.body.true_position(), self.body.true_heading());
         let (sin, cos) = libm::sincos(heading + ball.bearing);
         let (ahead_y, ahead_x) = libm::sincos(heading);
-        Some([x + HIPS * ahead_x + ball.distance * cos, y + HIPS * ahead_y + ball.distance * sin])
+        let hips = self.body.robot().hips().x;
+        Some([x + hips * ahead_x + ball.distance * cos, y + hips * ahead_y + ball.distance * sin])
     }
 
     fn kick(&mut self, skill: Skill, beside: [f64; 2]) -> Result<Kicked, Box<dyn std::error::Error>> {
-        let kick = KickParameters::own()?;
+        let robot = self.body.robot();
+        let kick = KickParameters::own(robot)?;
         let side = if skill == Skill::KickLeft { 1.0 } else { -1.0 };
         // Far from where it stood before, so that the body notices that it was placed.
-        let place = [PLACE[0], PLACE[1] + side, PLACE[2]];
-        let ball = [place[0] + HIPS + kick.ball_x + beside[0], place[1] + side * kick.ball_y + beside[1]];
+        let height = (robot.straight_height() * 100.0).ceil() / 100.0;
+        let place = [PLACE[0], PLACE[1] + side, height];
+        let ball =
+            [place[0] + robot.hips().x + kick.ball_x + beside[0], place[1] + side * kick.ball_y + beside[1]];
         let mut command = Actuators { skill_number: self.skill, ..Actuators::default() };
         for _ in 0..STAND {
             self.cycle(&command)?;

@@ -1,18 +1,18 @@
 //! Measures the walks: what is commanded and what the robot does, as a table.
 //!
 //! ```text
-//! cargo run --release -p monas-rcsssmj --example walk_table [-- POLICY]
+//! cargo run --release -p monas-rcsssmj --example walk_table [-- [--robot K1] [POLICY]]
 //! ```
 //!
-//! The program `rcssservermj` has to be in PATH. With a file of weights the policy walks, without
-//! one the own walk. Each row is of several trials of twelve seconds, of which the first two are
-//! for the start; they begin after stands of different lengths. In the last row the velocity
-//! changes every two seconds, with stops between. True speeds are those that the server says, felt
-//! ones those of the odometry.
+//! The program `rcssservermj` has to be in PATH. A T1 walks, or a K1. With a file of weights the
+//! policy walks, without one the own walk. Each row is of several trials of twelve seconds, of
+//! which the first two are for the start; they begin after stands of different lengths. In the last
+//! row the velocity changes every two seconds, with stops between. True speeds are those that the
+//! server says, felt ones those of the odometry.
 
 use std::collections::BTreeMap;
 
-use monas_rcsssmj::T1;
+use monas_rcsssmj::Booster;
 use monas_rcsssmj::monitor::Command;
 use monas_robot::{Actuators, BodySite, Percepts, Robot};
 use narukom::Timestamp;
@@ -59,9 +59,12 @@ const CHANGE: u32 = 107;
 const CHANGES: u32 = 36;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let policy = std::env::args().nth(1);
+    let mut arguments = std::env::args().skip(1).peekable();
+    let robot = arguments.next_if_eq("--robot").and_then(|_| arguments.next());
+    let policy = arguments.next();
     let (name, commands): (_, &[_]) = if policy.is_some() { ("policy", &POLICY) } else { ("own", &OWN) };
     let mut options = BTreeMap::from([("kick_off".to_owned(), "0".to_owned())]);
+    options.extend(robot.map(|name| ("robot".to_owned(), name)));
     options.extend(policy.map(|file| ("policy".to_owned(), file)));
     let site = BodySite { options, ..BodySite::default() };
     let mut table = Table { body: monas_rcsssmj::open(&site)?, cycle: 0, percepts: Percepts::default() };
@@ -121,7 +124,7 @@ fn rates(rates: [f64; 3]) -> String {
 }
 
 struct Table {
-    body: T1,
+    body: Booster,
     cycle: u64,
     percepts: Percepts,
 }
@@ -138,7 +141,8 @@ impl Table {
 
     /// Puts the robot up and has it stand.
     fn stand(&mut self, trial: u32) -> Result<(), Box<dyn std::error::Error>> {
-        let (team, at) = ("Monas".to_owned(), [-12.0, 5.0, 0.68]);
+        let height = (self.body.robot().straight_height() * 100.0).ceil() / 100.0;
+        let (team, at) = ("Monas".to_owned(), [-12.0, 5.0, height]);
         // Who is placed while walking has its joints moved by the commands of the walk.
         for _ in 0..STAND {
             self.cycle(&Actuators::default())?;

@@ -12,6 +12,7 @@ use std::time::Duration;
 use crate::connection::{Connection, pause};
 use crate::effector::Effectors;
 use crate::error::Error;
+use crate::humanoid::Humanoid;
 use crate::monitor::{Command, Monitor};
 use crate::options::Options;
 use crate::percept::Percept;
@@ -66,13 +67,13 @@ fn join(
 ) -> Result<Option<Connection>, Error> {
     // A number beside the player's.
     let number = if options.number > 1 { options.number - 1 } else { 2 };
-    init(&mut holder, &options.team, number)?;
-    let mut cycle = holder.receive(cycle)?;
+    init(&mut holder, options, number)?;
+    let mut cycle = holder.receive(|message| cycle(message, options.robot))?;
     if cycle > FIRST - 2 {
         return Ok(None);
     }
     while cycle < FIRST - 2 {
-        cycle = hold(&mut holder)?;
+        cycle = hold(&mut holder, options.robot)?;
         monitor.drain()?;
     }
     // The server finds new agents when it begins a cycle. It has begun the next one, and not the
@@ -80,12 +81,12 @@ fn join(
     monitor.wait_beyond(time(FIRST - 2))?;
     pause(taking_in);
     let mut player = Connection::open(server.agents())?;
-    init(&mut player, &options.team, options.number)?;
+    init(&mut player, options, options.number)?;
     pause(taking_in);
-    hold(&mut holder)?;
-    hold(&mut holder)?;
+    hold(&mut holder, options.robot)?;
+    hold(&mut holder, options.robot)?;
     let Some(message) = player.receive_within(SENDING)? else { return Ok(None) };
-    if self::cycle(message)? != FIRST {
+    if self::cycle(message, options.robot)? != FIRST {
         return Ok(None);
     }
     // The server waits for the answers now, and takes up in the next cycle what arrives.
@@ -96,24 +97,24 @@ fn join(
     Ok(Some(player))
 }
 
-fn init(agent: &mut Connection, team: &str, number: u32) -> Result<(), Error> {
+fn init(agent: &mut Connection, options: &Options, number: u32) -> Result<(), Error> {
     let mut message = Effectors::default();
-    message.init("T1", team, number);
+    message.init(options.robot, &options.team, number);
     agent.send(message.as_bytes())
 }
 
 /// Lets the server make a cycle; returns its number.
-fn hold(agent: &mut Connection) -> Result<u64, Error> {
+fn hold(agent: &mut Connection, robot: &Humanoid) -> Result<u64, Error> {
     let mut message = Effectors::default();
     message.synchronize();
     agent.send(message.as_bytes())?;
-    agent.receive(cycle)
+    agent.receive(|message| cycle(message, robot))
 }
 
 /// The number of the cycle with these percepts.
-fn cycle(message: &[u8]) -> Result<u64, Error> {
+fn cycle(message: &[u8], robot: &Humanoid) -> Result<u64, Error> {
     let mut percept = Percept::default();
-    percept.decode(message)?;
+    percept.decode(message, robot)?;
     // The time is cut off after two digits.
     Ok(((percept.time + 0.005) / 0.02).round() as u64)
 }

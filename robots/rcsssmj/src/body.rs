@@ -1,14 +1,14 @@
-//! A T1 on a server as a body.
+//! A robot on a server as a body.
 
-use monas_robot::{Actuators, Anatomy, JointCommands, Limits, Percepts, Robot};
+use monas_robot::{Actuators, Anatomy, JointCommands, Percepts, Robot};
 use narukom::Timestamp;
 
 use crate::admission::Admission;
-use crate::anatomy::{CYCLE, JOINTS, STRAIGHT_HEIGHT, limits};
 use crate::connection::Connection;
-use crate::control::T1Control;
+use crate::control::BoosterControl;
 use crate::effector::Effectors;
 use crate::error::Error;
+use crate::humanoid::{CYCLE, Humanoid};
 use crate::kick::KickParameters;
 use crate::match_rules::{FieldPose, MatchRules};
 use crate::monitor::{Command, Monitor};
@@ -26,7 +26,7 @@ pub(crate) const ADDRESS: &str = "127.0.0.1:60000";
 const JUMP: f64 = 0.2;
 /// How long a robot lies before it is picked up, s.
 const LYING: f64 = 5.0;
-/// How far behind the place where it fell a robot is put on its feet, m: not on the ball.
+/// How far from the place where it fell a robot is put on its feet, m: behind it, not on the ball.
 const BEHIND: f64 = 0.7;
 /// The cycles that a robot has to come to a stand before the kick-off.
 const SETTLING: u32 = 100;
@@ -35,13 +35,14 @@ const PATIENCE: u32 = 250;
 /// The cycles that the server has to take in a monitor.
 const TAKING_IN: u32 = 25;
 
-/// A Booster T1 on a server.
+/// A humanoid of Booster Robotics on a server.
 ///
 /// In lockstep, which is the default, the body has its own time: each call of
 /// [`sense`](Robot::sense) sends the commands of one cycle and waits for the server's answer, 20 ms
 /// later in simulated time. In real time it takes what has arrived and never waits.
-pub struct T1 {
-    control: T1Control,
+pub struct Booster {
+    robot: &'static Humanoid,
+    control: BoosterControl,
     rules: MatchRules,
     connection: Connection,
     /// Where the monitor's commands go, and the connection.
@@ -63,11 +64,15 @@ pub struct T1 {
     _server: Option<Server>,
 }
 
-impl T1 {
+impl Booster {
     /// Connects to the server at an address, or starts one, and sets the game up.
-    pub(crate) fn open(address: Option<&str>, options: &Options) -> Result<T1, Error> {
+    pub(crate) fn open(address: Option<&str>, options: &Options) -> Result<Booster, Error> {
+        let robot = options.robot;
         let walk = walk(options)?;
-        let kick = options.kick.as_deref().map_or_else(KickParameters::own, KickParameters::load)?;
+        let kick = match &options.kick {
+            Some(file) => KickParameters::load(file)?,
+            None => KickParameters::own(robot)?,
+        };
         let lockstep = !options.realtime;
         let is_admitted = address.is_none() && lockstep;
         let (server, monitors, connection) = match address {
@@ -87,8 +92,9 @@ impl T1 {
         };
         let mut rules = MatchRules::new(options.team.clone(), options.number, options.field);
         rules.half = options.half;
-        let mut body = T1 {
-            control: T1Control::new(walk, kick),
+        let mut body = Booster {
+            robot,
+            control: BoosterControl::new(robot, walk, kick),
             rules,
             connection,
             monitor: monitors.as_deref().map(Monitor::connect).transpose()?,
@@ -108,9 +114,9 @@ impl T1 {
         Ok(body)
     }
 
-    /// The ranges of all joints, rad.
-    pub fn joint_limits() -> [Limits; JOINTS] {
-        std::array::from_fn(limits)
+    /// The robot.
+    pub fn robot(&self) -> &'static Humanoid {
+        self.robot
     }
 
     /// Where the server says that the torso is: x, y and z on the field, m. No percept of the body
@@ -150,18 +156,23 @@ impl T1 {
         self.message.clear();
         match is_admitted {
             true => self.message.synchronize(),
-            false => self.message.init("T1", &options.team, options.number),
+            false => self.message.init(self.robot, &options.team, options.number),
         }
         self.connection.send(self.message.as_bytes())?;
         // What was perceived before it is at its place says nothing.
         self.connection.receive(|_| Ok(()))?;
         let FieldPose { x, y, heading } = options.start;
+        // The fall from a height may throw a robot over.
+        let is_caught = self.robot.placed_height > self.robot.straight_height && self.has_monitor();
         self.message.clear();
-        self.message.beam(x, y, heading);
+        self.message.beam(if is_caught { x - BEHIND } else { x }, y, heading);
         self.answer()?;
         self.connection.receive(|_| Ok(()))?;
         self.exchange()?;
         self.rules.observe(&self.control.percept().game);
+        if is_caught {
+            self.put_up(options.start.for_team(self.rules.side));
+        }
         for _ in 0..SETTLING {
             self.exchange()?;
         }
@@ -261,7 +272,13 @@ impl T1 {
             Side::Right => (-1.0, std::f64::consts::PI),
         };
         let [x, y, _] = self.true_position();
-        let at = [x - ahead * BEHIND, y, STRAIGHT_HEIGHT];
+        self.put_up(FieldPose { x: x - ahead * BEHIND, y, heading });
+    }
+
+    /// Has the monitor put the robot on its feet, at a pose on the field. It notices that it was
+    /// placed if the place is another one.
+    fn put_up(&mut self, FieldPose { x, y, heading }: FieldPose) {
+        let at = [x, y, self.robot.straight_height];
         let (team, number) = (self.rules.team.clone(), self.rules.number);
         self.instruct(Command::PlaceRobot { team, number, at, heading });
     }
@@ -289,17 +306,18 @@ impl T1 {
 
 /// The walk that the options name.
 fn walk(options: &Options) -> Result<Box<dyn WalkEngine>, Error> {
+    let robot = options.robot;
     match (&options.policy, &options.walk) {
         (Some(_), Some(_)) => {
             Err(Error::configuration("a robot walks by a `policy` or by a `walk`, not by both"))
         }
-        (Some(policy), None) => Ok(Box::new(PolicyWalk::load(policy)?)),
-        (None, Some(file)) => Ok(Box::new(SineWalk::new(SineParameters::load(file)?))),
-        (None, None) => Ok(Box::new(SineWalk::new(SineParameters::own()?))),
+        (Some(policy), None) => Ok(Box::new(PolicyWalk::load(robot, policy)?)),
+        (None, Some(file)) => Ok(Box::new(SineWalk::new(robot, SineParameters::load(file)?))),
+        (None, None) => Ok(Box::new(SineWalk::new(robot, SineParameters::own(robot)?))),
     }
 }
 
-impl Robot for T1 {
+impl Robot for Booster {
     fn anatomy(&self) -> &Anatomy {
         self.control.anatomy()
     }

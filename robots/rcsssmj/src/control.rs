@@ -1,4 +1,4 @@
-//! What a T1 does in each cycle: commands in the plane and of joints become commands to motors,
+//! What a robot does in each cycle: commands in the plane and of joints become commands to motors,
 //! percepts of the server become percepts of the body.
 
 use monas_robot::{
@@ -7,22 +7,14 @@ use monas_robot::{
 };
 use narukom::Timestamp;
 
-use crate::anatomy::{self, CYCLE_SECONDS, HEAD_PITCH, HEAD_YAW, JOINTS, LEFT_LEG};
 use crate::effector::{Effectors, MotorCommand};
+use crate::humanoid::{CYCLE_SECONDS, HEAD_PITCH, HEAD_YAW, Humanoid, JOINTS};
 use crate::inertia::Inertia;
 use crate::kick::{Kick, KickParameters};
-use crate::kinematics::{Foot, Stance, inclination, seen_in_torso};
+use crate::kinematics::{Foot, Stance, inclination};
 use crate::match_rules::MatchRules;
 use crate::percept::{Percept, Sight};
 use crate::walk::{Gait, Motion, Motors, Ramp, WalkEngine, WalkVelocity};
-
-/// Torque per angle and per angular velocity of a joint of a leg, and of another one, that is
-/// commanded by itself with a stiffness of 1.
-const GAINS: [(f64, f64); 2] = [(200.0, 5.0), (20.0, 1.0)];
-/// The gains of the head while the robot walks.
-const HEAD_GAINS: (f64, f64) = (20.0, 1.0);
-/// Torque per angular velocity of all joints of a robot that rests: it sinks.
-const SLACK: f64 = 2.0;
 
 /// What the robot does.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -37,8 +29,9 @@ enum Activity {
     Resting,
 }
 
-/// The state of a T1 between two cycles.
-pub(crate) struct T1Control {
+/// The state of a robot between two cycles.
+pub(crate) struct BoosterControl {
+    robot: &'static Humanoid,
     anatomy: Anatomy,
     gait: Gait,
     walk: Box<dyn WalkEngine>,
@@ -61,12 +54,17 @@ pub(crate) struct T1Control {
     sighted: bool,
 }
 
-impl T1Control {
-    pub(crate) fn new(walk: Box<dyn WalkEngine>, kick_parameters: KickParameters) -> T1Control {
+impl BoosterControl {
+    pub(crate) fn new(
+        robot: &'static Humanoid,
+        walk: Box<dyn WalkEngine>,
+        kick_parameters: KickParameters,
+    ) -> BoosterControl {
         let gait = walk.gait();
         let inertia = Inertia::default();
-        T1Control {
-            anatomy: anatomy::anatomy(gait.x, gait.y, gait.turn),
+        BoosterControl {
+            robot,
+            anatomy: robot.anatomy(gait.x, gait.y, gait.turn),
             gait,
             walk,
             ramp: Ramp::default(),
@@ -78,7 +76,7 @@ impl T1Control {
             skill_done: 0,
             skill_result: SkillResult::NoResult,
             targets: JointTargets::default(),
-            stance: Stance::new(&[0.0; JOINTS], &inertia.down()),
+            stance: Stance::new(robot, &[0.0; JOINTS], &inertia.down()),
             inertia,
             percept: Percept::default(),
             falls: FallDetector::default(),
@@ -100,10 +98,12 @@ impl T1Control {
 
     /// Takes a message of the server.
     pub(crate) fn receive(&mut self, message: &[u8], rules: &MatchRules) -> Result<(), crate::Error> {
-        self.percept.decode(message)?;
+        self.percept.decode(message, self.robot)?;
         self.inertia.advance(self.percept.gyro, self.percept.acceleration, CYCLE_SECONDS);
-        let before =
-            std::mem::replace(&mut self.stance, Stance::new(&self.percept.positions, &self.inertia.down()));
+        let before = std::mem::replace(
+            &mut self.stance,
+            Stance::new(self.robot, &self.percept.positions, &self.inertia.down()),
+        );
         let (roll, pitch) = inclination(&self.inertia.down());
         self.falls.measure(roll, pitch);
         if !self.falls.is_inclined() {
@@ -118,7 +118,7 @@ impl T1Control {
     /// The robot was put upright to another place: what it knew of its motion is void.
     pub(crate) fn placed(&mut self) {
         self.inertia = Inertia::default();
-        self.stance = Stance::new(&self.percept.positions, &self.inertia.down());
+        self.stance = Stance::new(self.robot, &self.percept.positions, &self.inertia.down());
         self.falls = FallDetector::default();
         self.ramp.reset();
         self.walk.reset();
@@ -162,7 +162,7 @@ impl T1Control {
                 // Bodies report no marks of the lines.
                 Sight::Mark { .. } => continue,
             };
-            let place = self.stance.on_ground(&seen_in_torso(at, &self.percept.positions));
+            let place = self.stance.on_ground(&self.robot.seen_in_torso(at, &self.percept.positions));
             image.objects.push(Sighting {
                 kind: kind as i32,
                 bearing: libm::atan2(place.y, place.x),
@@ -194,12 +194,12 @@ impl T1Control {
             }
             None => {
                 self.ramp.reset();
-                let slack = MotorCommand { damping: SLACK, ..MotorCommand::default() };
+                let slack = MotorCommand { damping: self.robot.slack, ..MotorCommand::default() };
                 self.motors = [slack; JOINTS];
             }
         }
-        for (joint, motor) in self.motors.iter().enumerate() {
-            message.motor(joint, motor);
+        for (joint, motor) in self.motors.iter().enumerate().take(self.robot.joint_count()) {
+            message.motor(self.robot, joint, motor);
         }
     }
 
@@ -224,7 +224,7 @@ impl T1Control {
     }
 
     fn move_head(&mut self) {
-        let (stiffness, damping) = HEAD_GAINS;
+        let (stiffness, damping) = self.robot.other_gains;
         let Actuators { head_yaw, head_pitch, .. } = self.commands;
         for (joint, angle) in [
             (HEAD_YAW, self.anatomy.head_yaw.clamp(head_yaw)),
@@ -235,9 +235,10 @@ impl T1Control {
     }
 
     fn move_joints(&mut self) {
-        for (joint, motor) in self.motors.iter_mut().enumerate() {
+        let robot = self.robot;
+        for (joint, motor) in self.motors.iter_mut().enumerate().take(robot.joint_count()) {
             if let Some((angle, stiffness)) = self.targets.of(joint) {
-                let (most, damping) = GAINS[usize::from(joint < LEFT_LEG)];
+                let (most, damping) = robot.gains(joint);
                 *motor =
                     MotorCommand { angle, stiffness: stiffness * most, damping, ..MotorCommand::default() };
             }
@@ -258,7 +259,7 @@ impl T1Control {
         self.activity = match (self.activity, skill) {
             (Activity::Walking, Skill::KickLeft | Skill::KickRight) if !self.is_fallen() => {
                 let foot = if skill == Skill::KickLeft { Foot::Left } else { Foot::Right };
-                self.kick = Some(Kick::new(self.kick_parameters, foot));
+                self.kick = Some(Kick::new(self.robot, self.kick_parameters, foot));
                 Activity::Kicking
             }
             (Activity::Walking, Skill::StandUp) if self.is_fallen() => Activity::Waiting,
@@ -344,16 +345,16 @@ impl T1Control {
     fn write_joints(&self, measured_at: u64, joints: &mut Joints) {
         joints.measured_at = measured_at;
         // The stops of the server's joints give way by some hundredths under load.
-        let within = |(joint, angle): (usize, &f64)| anatomy::limits(joint).clamp(*angle);
-        refill(&mut joints.positions, self.percept.positions.iter().enumerate().map(within));
-        refill(&mut joints.velocities, self.percept.velocities);
+        let (robot, count) = (self.robot, self.robot.joint_count());
+        let within = |(joint, angle): (usize, &f64)| robot.limits(joint).clamp(*angle);
+        refill(&mut joints.positions, self.percept.positions[..count].iter().enumerate().map(within));
+        refill(&mut joints.velocities, self.percept.velocities[..count].iter().copied());
         // The server's motors have neither heat nor current.
-        refill(&mut joints.temperatures, [0.0; JOINTS]);
-        refill(&mut joints.currents, [0.0; JOINTS]);
-        let stiffness = |(joint, motor): (usize, &MotorCommand)| {
-            (motor.stiffness / GAINS[usize::from(joint < LEFT_LEG)].0).clamp(0.0, 1.0)
-        };
-        refill(&mut joints.stiffnesses, self.motors.iter().enumerate().map(stiffness));
+        refill(&mut joints.temperatures, std::iter::repeat_n(0.0, count));
+        refill(&mut joints.currents, std::iter::repeat_n(0.0, count));
+        let stiffness =
+            |(joint, motor): (usize, &MotorCommand)| (motor.stiffness / robot.gains(joint).0).clamp(0.0, 1.0);
+        refill(&mut joints.stiffnesses, self.motors[..count].iter().enumerate().map(stiffness));
         joints.clamped = self.targets.clamped();
     }
 }

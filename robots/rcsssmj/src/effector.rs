@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use crate::anatomy;
+use crate::humanoid::Humanoid;
 
 /// A command to a motor. The server applies `stiffness (angle - measured) + damping (velocity -
 /// measured) + torque`, clamped to the motor's greatest torque, in each step of its physics until
@@ -33,16 +33,19 @@ impl Effectors {
         self.text.clear();
     }
 
-    /// Joins the game as a robot of a model: the first message of a connection.
-    pub fn init(&mut self, model: &str, team: &str, number: u32) {
-        self.write(format_args!("(init {model} {team} {number})"));
+    /// Joins the game: the first message of a connection.
+    pub fn init(&mut self, robot: &Humanoid, team: &str, number: u32) {
+        self.write(format_args!("(init {} {team} {number})", robot.name()));
     }
 
-    /// Commands the motor of a joint, an index in the anatomy.
-    pub fn motor(&mut self, joint: usize, command: &MotorCommand) {
+    /// Commands the motor of a joint of a robot, an index in its anatomy.
+    ///
+    /// # Panics
+    /// The robot has no such joint.
+    pub fn motor(&mut self, robot: &Humanoid, joint: usize, command: &MotorCommand) {
         let MotorCommand { angle, velocity, stiffness, damping, torque } = *command;
         let (angle, velocity) = (angle.to_degrees(), velocity.to_degrees());
-        let name = anatomy::motor(joint);
+        let name = robot.motor(joint);
         self.write(format_args!("({name} {angle:.3} {velocity:.3} {stiffness} {damping} {torque})"));
     }
 
@@ -76,16 +79,21 @@ impl Effectors {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::T1;
 
     #[test]
     fn effectors_are_written_in_degrees_one_after_the_other() {
         let mut message = Effectors::default();
-        message.init("T1", "Monas", 2);
+        message.init(&T1, "Monas", 2);
         assert_eq!(message.as_bytes(), b"(init T1 Monas 2)");
         message.clear();
         let angle = std::f64::consts::PI;
-        message.motor(1, &MotorCommand { angle, stiffness: 25.0, damping: 0.6, ..MotorCommand::default() });
-        message.motor(22, &MotorCommand { velocity: -angle, torque: 1.5, ..MotorCommand::default() });
+        message.motor(
+            &T1,
+            1,
+            &MotorCommand { angle, stiffness: 25.0, damping: 0.6, ..MotorCommand::default() },
+        );
+        message.motor(&T1, 22, &MotorCommand { velocity: -angle, torque: 1.5, ..MotorCommand::default() });
         message.beam(-2.0, 0.5, -angle);
         message.say(100.0, "YQ==");
         message.synchronize();

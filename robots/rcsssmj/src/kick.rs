@@ -2,15 +2,15 @@
 
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 
-use crate::anatomy::{CYCLE_SECONDS, JOINTS, JointValues, LEFT_LEG, RIGHT_LEG, WAIST, limits};
 use crate::effector::MotorCommand;
-use crate::kinematics::{BESIDE, Foot, HIPS, inclination, leg_angles};
+use crate::humanoid::{CYCLE_SECONDS, Humanoid, JOINTS, JointValues};
+use crate::kinematics::{Foot, inclination};
 use crate::parameters::parameters;
 use crate::walk::{Motion, Motors};
 
 parameters! {
     /// The numbers of a kick, as its file names them.
-    KickParameters, "../kick.toml";
+    KickParameters, kick;
     ball_x: 0.1, 0.6, "where the ball lies ahead of the robot, m";
     ball_y: 0.0, 0.3, "the same to the side of the foot that kicks, m";
     still: 0.0, 3.0, "how long the robot stands first, s";
@@ -51,6 +51,7 @@ parameters! {
 /// Inclination and angular velocity of the torso move ankle and hip of the leg that stands.
 #[derive(Clone, Debug)]
 pub struct Kick {
+    robot: &'static Humanoid,
     parameters: KickParameters,
     foot: Foot,
     /// Since the begin, s.
@@ -69,9 +70,9 @@ struct Progress {
 }
 
 impl Kick {
-    /// A kick with a foot.
-    pub fn new(parameters: KickParameters, foot: Foot) -> Kick {
-        Kick { parameters, foot, time: 0.0 }
+    /// A kick of a robot with a foot.
+    pub fn new(robot: &'static Humanoid, parameters: KickParameters, foot: Foot) -> Kick {
+        Kick { robot, parameters, foot, time: 0.0 }
     }
 
     /// Advances by a cycle of 20 ms. The motors hold the commands of a walk that stands. Returns
@@ -81,13 +82,15 @@ impl Kick {
         let Some(progress) = self.progress() else { return false };
         let angles = self.angles(motion, &progress);
         let KickParameters { stiffness, damping, .. } = self.parameters;
-        for (joint, motor) in motors.iter_mut().enumerate().skip(WAIST) {
+        let robot = self.robot;
+        let moved = robot.waist.unwrap_or(robot.left_leg)..robot.joint_count();
+        for (joint, motor) in motors.iter_mut().enumerate().take(moved.end).skip(moved.start) {
             let mix = |from: f64, to: f64| from + (to - from) * progress.own;
-            let (stiffness, damping) = match joint {
-                WAIST => (motor.stiffness, motor.damping),
-                _ => (mix(motor.stiffness, stiffness), mix(motor.damping, damping)),
+            let (stiffness, damping) = match joint < robot.left_leg {
+                true => (motor.stiffness, motor.damping),
+                false => (mix(motor.stiffness, stiffness), mix(motor.damping, damping)),
             };
-            let angle = mix(motor.angle, limits(joint).clamp(angles[joint]));
+            let angle = mix(motor.angle, robot.limits(joint).clamp(angles[joint]));
             *motor = MotorCommand { angle, stiffness, damping, ..*motor };
         }
         true
@@ -119,7 +122,7 @@ impl Kick {
     }
 
     fn angles(&self, motion: &Motion, progress: &Progress) -> JointValues {
-        let kick = &self.parameters;
+        let (robot, kick) = (self.robot, &self.parameters);
         let side = if self.foot == Foot::Left { 1.0 } else { -1.0 };
         let Progress { shift, lift, swing, back, .. } = *progress;
         // Positive to the right, as the left foot kicks.
@@ -130,8 +133,8 @@ impl Kick {
             (kick.lift * lift + kick.raise * swing) * (1.0 - back),
         );
         let inward = side * kick.inward * lift * (1.0 - back);
-        let stands = Vector3::new(kick.foot, -side * BESIDE + shift, -kick.height);
-        let kicks = Vector3::new(kick.foot + ahead, side * BESIDE + shift - inward, up - kick.height);
+        let stands = Vector3::new(kick.foot, -side * robot.beside + shift, -kick.height);
+        let kicks = Vector3::new(kick.foot + ahead, side * robot.beside + shift - inward, up - kick.height);
         let turned = UnitQuaternion::from_euler_angles(-tilt, -kick.lean, 0.0);
         let toes = UnitQuaternion::from_euler_angles(0.0, kick.toes * lift * (1.0 - back), 0.0);
 
@@ -139,13 +142,16 @@ impl Kick {
         let (roll, pitch) = (roll - tilt, pitch - kick.lean);
         let [roll_rate, pitch_rate, _] = motion.gyro;
         let mut angles = [0.0; JOINTS];
-        angles[WAIST] = side * kick.twist * swing * (1.0 - back);
-        for (leg, foot) in [(LEFT_LEG, Foot::Left), (RIGHT_LEG, Foot::Right)] {
+        if let Some(waist) = robot.waist {
+            angles[waist] = side * kick.twist * swing * (1.0 - back);
+        }
+        for foot in [Foot::Left, Foot::Right] {
+            let leg = robot.leg(foot);
             let sole = match foot == self.foot {
-                true => Isometry3::from_parts((HIPS + kicks).into(), turned * toes),
-                false => Isometry3::from_parts((HIPS + stands).into(), turned),
+                true => Isometry3::from_parts((robot.hips + kicks).into(), turned * toes),
+                false => Isometry3::from_parts((robot.hips + stands).into(), turned),
             };
-            angles[leg..leg + 6].copy_from_slice(&leg_angles(foot, &sole));
+            angles[leg..leg + 6].copy_from_slice(&robot.leg_angles(foot, &sole));
             // Both feet stand until one is lifted, and after it is put down.
             if foot != self.foot || lift <= 0.0 || back >= 1.0 {
                 angles[leg] += kick.hip_pitch * pitch + kick.hip_pitch_rate * pitch_rate;
@@ -167,8 +173,8 @@ fn smooth(part: f64) -> f64 {
 mod tests {
     use super::*;
 
-    fn run(foot: Foot) -> Vec<JointValues> {
-        let mut kick = Kick::new(KickParameters::own().unwrap(), foot);
+    fn run(robot: &'static Humanoid, foot: Foot) -> Vec<JointValues> {
+        let mut kick = Kick::new(robot, KickParameters::own(robot).unwrap(), foot);
         let mut angles = Vec::new();
         let mut motors = [MotorCommand::default(); JOINTS];
         while kick.advance(&Motion::STILL, &mut motors) {
@@ -180,30 +186,38 @@ mod tests {
 
     #[test]
     fn it_begins_and_ends_with_the_commands_of_the_walk_and_is_fast_in_lift_and_swing_only() {
-        let kick = KickParameters::own().unwrap();
-        let angles = run(Foot::Left);
-        assert!(angles[0].iter().all(|angle| *angle == 0.0));
-        let steps: Vec<f64> = angles
-            .windows(2)
-            .map(|pair| (0..JOINTS).map(|joint| (pair[1][joint] - pair[0][joint]).abs()).fold(0.0, f64::max))
-            .collect();
-        let fast = steps.iter().filter(|step| **step > 0.15).count() as f64 * CYCLE_SECONDS;
-        assert!(fast <= kick.lifting + kick.swinging + 3.0 * CYCLE_SECONDS, "{fast} s of fast motion");
-        assert!(angles.last().unwrap().iter().all(|angle| angle.abs() < 0.2));
-        assert!(angles.len() > 50 && angles.len() < 400, "{} cycles", angles.len());
+        for robot in Humanoid::ALL {
+            let kick = KickParameters::own(robot).unwrap();
+            let angles = run(robot, Foot::Left);
+            assert!(angles[0].iter().all(|angle| *angle == 0.0));
+            let steps: Vec<f64> = angles
+                .windows(2)
+                .map(|pair| (0..JOINTS).map(|joint| (pair[1][joint] - pair[0][joint]).abs()))
+                .map(|steps| steps.fold(0.0, f64::max))
+                .collect();
+            let fast = steps.iter().filter(|step| **step > 0.15).count() as f64 * CYCLE_SECONDS;
+            assert!(fast <= kick.lifting + kick.swinging + 3.0 * CYCLE_SECONDS, "{fast} s of fast motion");
+            assert!(angles.last().unwrap().iter().all(|angle| angle.abs() < 0.2));
+            assert!(angles.len() > 50 && angles.len() < 400, "{} cycles", angles.len());
+        }
     }
 
     #[test]
     fn the_other_foot_kicks_in_a_mirror() {
-        let (left, right) = (run(Foot::Left), run(Foot::Right));
-        assert_eq!(left.len(), right.len());
-        for (left, right) in left.iter().zip(&right) {
-            for joint in 0..6 {
-                let sign = if matches!(joint, 1 | 2 | 5) { -1.0 } else { 1.0 };
-                assert!((left[LEFT_LEG + joint] - sign * right[RIGHT_LEG + joint]).abs() < 1e-3);
-                assert!((left[RIGHT_LEG + joint] - sign * right[LEFT_LEG + joint]).abs() < 1e-3);
+        for robot in Humanoid::ALL {
+            let (left_leg, right_leg) = (robot.left_leg, robot.right_leg);
+            let (left, right) = (run(robot, Foot::Left), run(robot, Foot::Right));
+            assert_eq!(left.len(), right.len());
+            for (left, right) in left.iter().zip(&right) {
+                for joint in 0..6 {
+                    let sign = if matches!(joint, 1 | 2 | 5) { -1.0 } else { 1.0 };
+                    assert!((left[left_leg + joint] - sign * right[right_leg + joint]).abs() < 1e-3);
+                    assert!((left[right_leg + joint] - sign * right[left_leg + joint]).abs() < 1e-3);
+                }
+                if let Some(waist) = robot.waist {
+                    assert_eq!(left[waist], -right[waist]);
+                }
             }
-            assert_eq!(left[WAIST], -right[WAIST]);
         }
     }
 }

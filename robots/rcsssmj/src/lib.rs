@@ -1,36 +1,41 @@
-//! The Booster T1 on the RoboCup MuJoCo soccer server as a body.
+//! The Booster T1 and K1 on the RoboCup MuJoCo soccer server as bodies.
 //!
 //! The server, `rcssservermj` of the package `rcsssmj` of PyPI, simulates humanoids, a ball and a
-//! referee with MuJoCo. [`T1`] implements [`monas_robot::Robot`] as one of its agents: it connects
-//! to a server or starts one, and speaks its protocol, which [`frame`], [`expression`],
-//! [`percept`], [`effector`] and [`monitor`] hold. A configuration names the body: `<body
-//! kind="rcsssmj"/>`.
+//! referee with MuJoCo. [`Booster`] implements [`monas_robot::Robot`] as one of its agents: it
+//! connects to a server or starts one, and speaks its protocol, which [`frame`], [`expression`],
+//! [`percept`], [`effector`] and [`monitor`] hold. A configuration names the body and the robot:
+//! `<body kind="rcsssmj" robot="K1"/>`; without a name it is a T1.
+//!
+//! A [`Humanoid`] holds what the robots differ in, as data: joints, lengths, masses, gains, and the
+//! numbers of their motions. [`T1`] and [`K1`] are the two.
 //!
 //! The commands in the plane, which all bodies have, become commands to motors here. A
 //! [`WalkEngine`](walk::WalkEngine) turns velocities into steps: [`SineWalk`] is the project's own,
-//! [`PolicyWalk`] a network whose weights are loaded from a file. A [`Kick`] is a motion from a
-//! stand. The example `motion_search` finds the numbers of walk and kick. Odometry follows from the
-//! foot on the ground by the [`kinematics`] of the legs and from the gyroscope, the inclination of
-//! the torso from gyroscope and accelerometer ([`Inertia`]). The true pose that the server sends is
-//! used to notice that the referee has placed the robot, and for nothing else that players see.
+//! [`PolicyWalk`] a network for the T1 whose weights are loaded from a file. A [`Kick`] is a motion
+//! from a stand. The example `motion_search` finds the numbers of walk and kick. Odometry follows
+//! from the foot on the ground by the [`kinematics`] of the legs and from the gyroscope, the
+//! inclination of the torso from gyroscope and accelerometer ([`Inertia`]). The true pose that the
+//! server sends is used to notice that the referee has placed the robot, and for nothing else that
+//! players see.
 //!
 //! # Limits
 //!
 //! The robot cannot stand up: it waits until the referee puts it on its feet, or the monitor where
-//! the option `pick_up` allows it. It has no radio: messages of the server have ten bytes. Marks of
-//! the lines are read but not reported, since [`monas_robot::Sightings`] has none.
+//! the option `pick_up` allows it. A K1 may fall over when the referee places it: version 0.2.1 of
+//! the server drops it from half a metre. The robot has no radio: messages of the server have ten
+//! bytes. Marks of the lines are read but not reported, since [`monas_robot::Sightings`] has none.
 //!
 //! ```
+//! use monas_rcsssmj::T1;
 //! use monas_rcsssmj::percept::{Percept, PlayMode};
 //!
 //! let mut percept = Percept::default();
-//! percept.decode(b"(time (now 4.17))(GS (t 0.0)(pm PlayOn)(sl 0)(sr 0))")?;
+//! percept.decode(b"(time (now 4.17))(GS (t 0.0)(pm PlayOn)(sl 0)(sr 0))", &T1)?;
 //! assert_eq!((percept.time, percept.game.play_mode), (4.17, PlayMode::PlayOn));
 //! # Ok::<(), monas_rcsssmj::Error>(())
 //! ```
 
 mod admission;
-mod anatomy;
 mod body;
 mod connection;
 mod control;
@@ -38,7 +43,9 @@ pub mod effector;
 mod error;
 pub mod expression;
 pub mod frame;
+mod humanoid;
 mod inertia;
+mod k1;
 mod kick;
 pub mod kinematics;
 mod limits;
@@ -52,25 +59,27 @@ mod policy;
 mod server;
 mod sine_parameters;
 mod sine_walk;
+mod t1;
 pub mod walk;
 
 use monas_robot::{BodyKind, BodySettings, BodySite, Robot};
 
-pub use anatomy::{JOINTS, JointValues};
-pub use body::T1;
+pub use body::Booster;
 pub use error::{Error, ErrorKind};
+pub use humanoid::{Humanoid, JOINTS, JointValues};
 pub use inertia::Inertia;
+pub use k1::K1;
 pub use kick::{Kick, KickParameters};
-pub use mass::{centre_of_mass, mass};
 pub use match_rules::FieldSize;
 pub use policy::PolicyWalk;
 pub use server::Server;
 pub use sine_parameters::SineParameters;
 pub use sine_walk::SineWalk;
+pub use t1::T1;
 
 monas_robot::body_kind!(BodyKind {
     name: "rcsssmj",
-    summary: "a Booster T1 on the RoboCup MuJoCo soccer server, which it starts without an `address`",
+    summary: "a Booster T1 or K1 on the RoboCup MuJoCo soccer server, which it starts without an `address`",
     options: options::OPTIONS,
     has_own_time,
     limits: |settings, _| limits::limits(settings),
@@ -79,12 +88,12 @@ monas_robot::body_kind!(BodyKind {
     probe,
 });
 
-/// Opens a T1 at a server.
+/// Opens a robot at a server.
 ///
 /// # Errors
 /// An option has no meaning, there is no server, or it does not answer.
-pub fn open(site: &BodySite) -> Result<T1, Error> {
-    T1::open(site.address.as_deref(), &options::Options::of(&site.options)?)
+pub fn open(site: &BodySite) -> Result<Booster, Error> {
+    Booster::open(site.address.as_deref(), &options::Options::of(&site.options)?)
 }
 
 /// In lockstep the server's time is that of the run.

@@ -1,4 +1,4 @@
-//! What a T1 on the server cannot do.
+//! What a robot on the server cannot do.
 
 use monas_robot::topics::{BATTERY, CONTACTS, HEARD, LEDS, SAID, SIGHTINGS, SONAR};
 use monas_robot::{BodyLimit, BodySettings, Skill};

@@ -6,11 +6,13 @@ use std::path::PathBuf;
 use monas_robot::{BodyOption, OptionKind};
 
 use crate::error::Error;
+use crate::humanoid::Humanoid;
 use crate::match_rules::{FieldPose, FieldSize};
 
 /// The options, as [`OPTIONS`] documents them.
 #[derive(Clone, PartialEq, Debug)]
 pub(crate) struct Options {
+    pub(crate) robot: &'static Humanoid,
     pub(crate) server: Option<String>,
     pub(crate) monitor: Option<String>,
     pub(crate) realtime: bool,
@@ -28,6 +30,7 @@ pub(crate) struct Options {
 
 /// All options.
 pub(crate) const OPTIONS: &[BodyOption] = &[
+    option("robot", OptionKind::Name, "`T1`, which is the default, or `K1`"),
     option("server", OptionKind::Text, "the program of the server; by default `rcssservermj`"),
     option("monitor", OptionKind::Text, "the monitors' address of a server that is not started here"),
     option("realtime", OptionKind::Flag, "`1` keeps real time; by default the run waits for the server"),
@@ -64,6 +67,7 @@ impl Options {
             goal_width: given.number("goal_width", size.goal_width, 0.1, 1000.0)?,
         };
         Ok(Options {
+            robot: given.robot()?,
             server: given.text("server"),
             monitor: given.text("monitor"),
             realtime: given.flag("realtime", false)?,
@@ -100,6 +104,13 @@ impl Given<'_> {
             true => Ok(word),
             false => Err(wrong(name, &word, "letters, digits, `-` and `_`")),
         }
+    }
+
+    fn robot(&self) -> Result<&'static Humanoid, Error> {
+        let [default, ..] = Humanoid::ALL;
+        let Some(name) = self.text("robot") else { return Ok(default) };
+        let names = Humanoid::ALL.map(|robot| format!("`{}`", robot.name())).join(" or ");
+        Humanoid::named(&name).ok_or_else(|| wrong("robot", &name, &names))
     }
 
     fn number(&self, name: &str, default: f64, least: f64, most: f64) -> Result<f64, Error> {
@@ -139,12 +150,15 @@ mod tests {
         assert_eq!((options.number, options.pick_up, options.kick_off), (7, true, true));
         assert_eq!((options.field.goal_width, options.field.length), (2.0, 55.0));
         assert_eq!((options.team.as_str(), options.start.x), ("Monas", -1.5));
+        assert_eq!(options.robot.name(), "T1");
+        assert_eq!(read(&[("robot", "K1")]).unwrap().robot.name(), "K1");
     }
 
     #[test]
     fn a_value_without_meaning_is_refused() {
         assert_eq!(read(&[("number", "0")]).unwrap_err(), "`number` is `0`, expected a number from 1 to 99");
         assert_eq!(read(&[("pick_up", "maybe")]).unwrap_err(), "`pick_up` is `maybe`, expected `0` or `1`");
+        assert_eq!(read(&[("robot", "k1")]).unwrap_err(), "`robot` is `k1`, expected `T1` or `K1`");
         assert!(read(&[("team", "A) (B")]).unwrap_err().contains("expected letters, digits"));
         assert!(read(&[("start_x", "3")]).unwrap_err().contains("from -27.5 to 0"));
     }

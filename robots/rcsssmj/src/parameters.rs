@@ -2,10 +2,10 @@
 
 use toml::de::{DeTable, DeValue};
 
-/// Defines the parameters of a motion from one list: name, range and meaning. The last line names
-/// the file of the parameters that the project brings.
+/// Defines the parameters of a motion from one list: name, range and meaning. The first line names
+/// the field of [`Humanoid`](crate::Humanoid) with the file that the project brings.
 macro_rules! parameters {
-    ($(#[$doc:meta])* $type:ident, $own:literal; $($name:ident: $low:expr, $high:expr, $meaning:literal;)*) => {
+    ($(#[$doc:meta])* $type:ident, $own:ident; $($name:ident: $low:expr, $high:expr, $meaning:literal;)*) => {
         $(#[$doc])*
         #[derive(Clone, Copy, PartialEq, Debug, Default)]
         pub struct $type {
@@ -16,12 +16,12 @@ macro_rules! parameters {
             /// Name, least and greatest value, and meaning of each parameter.
             const ROWS: &[crate::parameters::Row] = &[$((stringify!($name), $low, $high, $meaning)),*];
 
-            /// The parameters that the project brings.
+            /// The parameters that the project brings for a robot.
             ///
             /// # Errors
             /// None, unless its file was changed to one without meaning.
-            pub fn own() -> Result<$type, crate::Error> {
-                $type::parse(include_str!($own)).map_err(crate::Error::configuration)
+            pub fn own(robot: &crate::Humanoid) -> Result<$type, crate::Error> {
+                $type::parse(robot.$own).map_err(crate::Error::configuration)
             }
 
             /// Reads a file of parameters. All of them have to be there.

@@ -2,9 +2,9 @@
 
 use std::f64::consts::PI;
 
-use crate::anatomy::{self, JointValues};
 use crate::error::Error;
 use crate::expression::{Item, Items};
+use crate::humanoid::{Humanoid, JointValues};
 
 /// The percepts of a cycle, in SI units. It is reused: what a message does not hold keeps its
 /// value, except for sights and sounds.
@@ -188,18 +188,19 @@ pub struct Sound {
 }
 
 impl Percept {
-    /// Reads a message. An unknown percept is passed over: robots differ in what they perceive.
+    /// Reads a message to a robot. An unknown percept is passed over: robots differ in what they
+    /// perceive.
     ///
     /// # Errors
     /// The parentheses are not balanced, or a percept does not have the form of its kind. What was
     /// read before remains.
-    pub fn decode(&mut self, message: &[u8]) -> Result<(), Error> {
+    pub fn decode(&mut self, message: &[u8], robot: &Humanoid) -> Result<(), Error> {
         self.has_sights = false;
         self.sights.clear();
         self.sounds.clear();
         let mut percepts = Items::of(message)?;
         while let Some((kind, content)) = percepts.next_named() {
-            self.decode_percept(kind, content).ok_or_else(|| {
+            self.decode_percept(kind, content, robot).ok_or_else(|| {
                 let kind = String::from_utf8_lossy(kind).into_owned();
                 Error::protocol(format!("a percept `{kind}` is not understood"))
             })?;
@@ -207,7 +208,7 @@ impl Percept {
         Ok(())
     }
 
-    fn decode_percept(&mut self, kind: &[u8], mut content: Items<'_>) -> Option<()> {
+    fn decode_percept(&mut self, kind: &[u8], mut content: Items<'_>, robot: &Humanoid) -> Option<()> {
         let degrees = |[x, y, z]: [f64; 3]| [radians(x), radians(y), radians(z)];
         match kind {
             b"time" => self.time = content.find_named(b"now")?.number()?,
@@ -217,7 +218,7 @@ impl Percept {
             b"GYR" => self.gyro = degrees(content.find_named(b"rt")?.numbers()?),
             b"ACC" => self.acceleration = content.find_named(b"a")?.numbers()?,
             b"HJ" => {
-                let joint = anatomy::of_perceptor(content.find_named(b"n")?.word()?);
+                let joint = robot.of_perceptor(content.find_named(b"n")?.word()?);
                 let position = radians(content.find_named(b"ax")?.number()?);
                 let velocity = radians(content.find_named(b"vx")?.number()?);
                 if let Some(joint) = joint {
@@ -319,11 +320,12 @@ fn radians(degrees: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use std::path::Path;
+    use std::path::{Path, PathBuf};
 
     use proptest::prelude::*;
 
     use super::*;
+    use crate::{JOINTS, K1, T1};
 
     const TEXT: &str = "(time (now 4.17))(GS (t 1.5)(pm KickIn_Right)(tl Monas)(sl 2)(sr 1))\
         (quat (n torso_quat) (q 0.707 0.0 0.0 -0.707))(pos (n torso_pos) (p -3.0 2.0 0.673))\
@@ -335,7 +337,7 @@ mod tests {
 
     fn read(text: &str) -> Result<Percept, Error> {
         let mut percept = Percept::default();
-        percept.decode(text.as_bytes()).map(|()| percept)
+        percept.decode(text.as_bytes(), &T1).map(|()| percept)
     }
 
     #[test]
@@ -369,10 +371,10 @@ mod tests {
     #[test]
     fn what_a_message_leaves_out_stays_except_sights_and_sounds() {
         let mut percept = read(TEXT).unwrap();
-        percept.decode(b"(time (now 4.19))").unwrap();
+        percept.decode(b"(time (now 4.19))", &T1).unwrap();
         assert_eq!((percept.time, percept.game.left_score), (4.19, 2));
         assert!(!percept.has_sights && percept.sights.is_empty() && percept.sounds.is_empty());
-        percept.decode(b"(See )").unwrap();
+        percept.decode(b"(See )", &T1).unwrap();
         assert!(percept.has_sights, "a camera that sees nothing has looked");
     }
 
@@ -401,30 +403,37 @@ mod tests {
         }
     }
 
-    /// Messages of the server itself, if a folder `shared` above the workspace has them.
+    /// Messages of the server itself, if a folder `shared` above the workspace has them, or the one
+    /// that the environment variable names.
     #[test]
     fn recorded_messages_are_read() {
-        let mut folders = Path::new(env!("CARGO_MANIFEST_DIR")).ancestors();
-        let files = |folder: &Path| std::fs::read_dir(folder.join("shared/robots/rcsssmj")).ok();
-        let Some(files) = folders.find_map(files) else { return };
-        let mut sights = 0;
+        let named = std::env::var_os("MONAS_SHARED").map(PathBuf::from);
+        let above = Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().map(|folder| folder.join("shared"));
+        let files = |folder: PathBuf| std::fs::read_dir(folder.join("robots/rcsssmj")).ok();
+        let Some(files) = named.into_iter().chain(above).find_map(files) else { return };
+        let mut sights = [0, 0];
         for file in files.map(|file| file.unwrap().path()) {
             let name = file.file_name().unwrap().to_string_lossy().into_owned();
-            if name.starts_with("percept_T1_") {
-                let mut percept = Percept::default();
-                percept.decode(&std::fs::read(&file).unwrap()).unwrap();
-                assert!(percept.time > 4.0 && percept.true_position[2] > 0.6, "{name}");
-                assert_eq!(percept.game.left_team, "Monas");
-                sights += percept.sights.len();
-            }
+            let is_of = |robot: &&Humanoid| name.starts_with(&format!("percept_{}_", robot.name()));
+            let Some(robot) = Humanoid::ALL.into_iter().find(is_of) else { continue };
+            let mut percept = Percept::default();
+            let marked = JointValues::from([1e9; JOINTS]);
+            (percept.positions, percept.velocities) = (marked, marked);
+            percept.decode(&std::fs::read(&file).unwrap(), robot).unwrap();
+            assert!(percept.time > 3.0 && percept.true_position[2] > 0.6, "{name}");
+            assert_eq!(percept.game.left_team, "Monas");
+            let sent = percept.positions.iter().filter(|angle| angle.abs() < 4.0).count();
+            assert_eq!(sent, robot.joint_count(), "{name}");
+            assert_eq!(percept.positions[..sent].iter().filter(|angle| **angle == 1e9).count(), 0, "{name}");
+            sights[usize::from(*robot == K1)] += percept.sights.len();
         }
-        assert!(sights > 20, "{sights}");
+        assert!(sights.iter().all(|sights| *sights > 20), "{sights:?}");
     }
 
     proptest! {
         #[test]
         fn any_bytes_are_read_or_refused(bytes in prop::collection::vec(any::<u8>(), 0..200)) {
-            let _ = Percept::default().decode(&bytes);
+            let _ = Percept::default().decode(&bytes, &T1);
         }
 
         #[test]
@@ -433,9 +442,9 @@ mod tests {
         ) {
             let mut bytes = TEXT.as_bytes().to_vec();
             bytes[place] = byte;
-            let _ = Percept::default().decode(&bytes);
+            let _ = Percept::default().decode(&bytes, &T1);
             bytes.truncate(length);
-            let _ = Percept::default().decode(&bytes);
+            let _ = Percept::default().decode(&bytes, &T1);
         }
     }
 }

@@ -11,9 +11,10 @@ use std::path::Path;
 
 use monas_robot::Limits;
 
-use crate::anatomy::JOINTS;
+use crate::T1;
 use crate::effector::MotorCommand;
 use crate::error::Error;
+use crate::humanoid::{Humanoid, JOINTS};
 use crate::walk::{Gait, Motion, Motors, WalkEngine, WalkVelocity};
 
 const INPUTS: usize = 3 * JOINTS + 9;
@@ -76,11 +77,17 @@ struct Normalisation {
 }
 
 impl PolicyWalk {
-    /// Loads the weights from a file.
+    /// Loads the weights from a file, for a robot.
     ///
     /// # Errors
-    /// The file cannot be read, does not have the size of the network, or holds what is no number.
-    pub fn load(path: &Path) -> Result<PolicyWalk, Error> {
+    /// The robot is not a T1. The file cannot be read, does not have the size of the network, or
+    /// holds what is no number.
+    pub fn load(robot: &Humanoid, path: &Path) -> Result<PolicyWalk, Error> {
+        if *robot != T1 {
+            let name = robot.name();
+            let what = format!("the `policy` walks a T1 only: a {name} walks by a `walk`, or by its own");
+            return Err(Error::configuration(what));
+        }
         let named =
             |what: String| Error::configuration(format!("the walking policy {}: {what}", path.display()));
         let bytes = std::fs::read(path).map_err(|error| named(error.to_string()))?;
@@ -211,6 +218,7 @@ impl WalkEngine for PolicyWalk {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::K1;
 
     /// Weights that are all zero, except for some.
     fn weights(set: &[(usize, f32)]) -> Vec<u8> {
@@ -223,7 +231,7 @@ mod tests {
     fn a_file_of_another_size_or_with_other_than_numbers_is_refused() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("policy.f32");
-        let error = || PolicyWalk::load(&path).err().unwrap().to_string();
+        let error = || PolicyWalk::load(&T1, &path).err().unwrap().to_string();
         assert!(error().contains("policy.f32") && error().contains("No such file"), "{}", error());
         std::fs::write(&path, [0; 12]).unwrap();
         assert!(
@@ -234,7 +242,13 @@ mod tests {
         std::fs::write(&path, weights(&[(7, f32::NAN)])).unwrap();
         assert!(error().ends_with("weight 7 is no finite number"), "{}", error());
         std::fs::write(&path, weights(&[])).unwrap();
-        assert!(PolicyWalk::load(&path).is_ok());
+        assert!(PolicyWalk::load(&T1, &path).is_ok());
+    }
+
+    #[test]
+    fn a_robot_with_other_joints_is_refused() {
+        let error = PolicyWalk::load(&K1, Path::new("policy.f32")).err().unwrap().to_string();
+        assert_eq!(error, "the `policy` walks a T1 only: a K1 walks by a `walk`, or by its own");
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! The simulation server as a process that the body starts.
 
+use std::ffi::OsString;
 use std::fs::File;
 use std::net::TcpListener;
 use std::path::{Path, PathBuf};
@@ -19,6 +20,10 @@ const INSTALL: &str =
 const STARTING: Duration = Duration::from_secs(90);
 /// The pause between two attempts to connect.
 const RETRY: Duration = Duration::from_millis(5);
+
+/// What the server's Python runs first, from the server's folder: version 0.2.1 ends with an error
+/// when a shape without a name touches the ball, as the K1 has.
+const REPAIR: &str = include_str!("sitecustomize.py");
 
 /// Waits until its input ends, which it does when the run has ended in any way; then ends the
 /// server and removes its folder.
@@ -50,6 +55,7 @@ impl Server {
             |what: std::io::Error| Error::configuration(format!("the server cannot be started: {what}"));
         let folder = std::env::temp_dir().join(format!("monas-rcsssmj-{}-{agents}", std::process::id()));
         std::fs::create_dir_all(&folder).map_err(failed)?;
+        std::fs::write(folder.join("sitecustomize.py"), REPAIR).map_err(failed)?;
         let log = File::create(folder.join("output.log")).map_err(failed)?;
         let mut command = Command::new(program);
         command.args(["--no-render", "--host", "127.0.0.1"]);
@@ -58,6 +64,7 @@ impl Server {
             command.args(["--sync", "--no-realtime"]);
         }
         let errors = log.try_clone().map_err(failed)?;
+        command.env("PYTHONPATH", with_python_path(&folder)?);
         command.current_dir(&folder).stdin(Stdio::null()).stdout(log).stderr(errors);
         // An interrupt from the keyboard ends the run first, and the run its server.
         #[cfg(unix)]
@@ -151,6 +158,15 @@ fn watch(server: &Child, folder: &Path) -> std::io::Result<Option<Child>> {
     #[cfg(unix)]
     std::os::unix::process::CommandExt::process_group(&mut watcher, 0);
     watcher.spawn().map(Some)
+}
+
+/// The folders in which Python looks for modules, a further one first.
+fn with_python_path(first: &Path) -> Result<OsString, Error> {
+    let others = std::env::var_os("PYTHONPATH").unwrap_or_default();
+    let others = std::env::split_paths(&others).filter(|folder| !folder.as_os_str().is_empty());
+    let folders = std::iter::once(first.to_owned()).chain(others);
+    std::env::join_paths(folders)
+        .map_err(|error| Error::configuration(format!("the folder of the server: {error}")))
 }
 
 /// Two ports that are free at present.

@@ -6,7 +6,7 @@ use crate::parameters::parameters;
 
 parameters! {
     /// The numbers of a walk, as its file names them.
-    SineParameters, "../walk.toml";
+    SineParameters, walk;
     frequency: 0.5, 5.0, "pairs of steps in a second";
     height: 0.3, 0.55, "of the hips above the soles in a walk, m";
     foot: -0.15, 0.15, "where the soles are ahead of the hips, m";
@@ -51,21 +51,21 @@ parameters! {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    const OWN: &str = include_str!("../walk.toml");
+    use crate::T1;
 
     #[test]
     fn a_file_without_a_parameter_or_with_an_unknown_one_is_refused() {
+        let own = T1.walk;
         let error = |text: String| SineParameters::parse(&text).unwrap_err();
-        assert_eq!(error(OWN.replace("lean =", "# lean =")), "`lean` is missing");
-        assert_eq!(error(format!("{OWN}\nhop = 1")), "there is no parameter `hop`");
-        assert_eq!(error(OWN.replace("lift = ", "lift = 7 #")), "`lift` is 7, expected 0 to 0.15");
-        assert_eq!(error(OWN.replace("lift = ", "lift = \"x\" #")), "`lift` is no number but a string");
+        assert_eq!(error(own.replace("lean =", "# lean =")), "`lean` is missing");
+        assert_eq!(error(format!("{own}\nhop = 1")), "there is no parameter `hop`");
+        assert_eq!(error(own.replace("lift = ", "lift = 7 #")), "`lift` is 7, expected 0 to 0.15");
+        assert_eq!(error(own.replace("lift = ", "lift = \"x\" #")), "`lift` is no number but a string");
     }
 
     #[test]
     fn what_is_written_is_read_again() {
-        let mut walk = SineParameters::own().unwrap();
+        let mut walk = SineParameters::own(&T1).unwrap();
         assert!(walk.set("lift", 9.0) && !walk.set("hop", 1.0));
         assert_eq!(walk.lift, 0.15, "clamped to its range");
         assert_eq!(SineParameters::parse(&walk.to_toml()).unwrap(), walk);

@@ -5,11 +5,11 @@ use std::f64::consts::{PI, TAU};
 use monas_robot::Limits;
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 
-use crate::anatomy::{
-    CYCLE_SECONDS, JOINTS, JointValues, LEFT_LEG, LEFT_SHOULDER_ROLL, RIGHT_LEG, RIGHT_SHOULDER_ROLL, limits,
-};
 use crate::effector::MotorCommand;
-use crate::kinematics::{BESIDE, Foot, HIPS, inclination, leg_angles};
+use crate::humanoid::{
+    CYCLE_SECONDS, Humanoid, JOINTS, JointValues, LEFT_SHOULDER_ROLL, RIGHT_SHOULDER_ROLL,
+};
+use crate::kinematics::{Foot, inclination};
 use crate::sine_parameters::SineParameters;
 use crate::walk::{Gait, Motion, Motors, WalkEngine, WalkVelocity};
 
@@ -19,6 +19,7 @@ use crate::walk::{Gait, Motion, Motors, WalkEngine, WalkVelocity};
 /// torso move ankles and hips, and lengthen the strides to the side to which the robot falls.
 #[derive(Clone, Debug)]
 pub struct SineWalk {
+    robot: &'static Humanoid,
     parameters: SineParameters,
     /// Where it is in a pair of steps, rad; the left foot swings in the first half.
     clock: f64,
@@ -41,8 +42,9 @@ const CORRECTION: f64 = 0.5;
 
 impl SineWalk {
     /// A walk with parameters, for a robot that stands.
-    pub fn new(parameters: SineParameters) -> SineWalk {
+    pub fn new(robot: &'static Humanoid, parameters: SineParameters) -> SineWalk {
         SineWalk {
+            robot,
             parameters,
             clock: 0.0,
             crouched: 0.0,
@@ -75,7 +77,7 @@ impl SineWalk {
     }
 
     fn angles(&self, motion: &Motion) -> JointValues {
-        let walk = &self.parameters;
+        let (robot, walk) = (self.robot, &self.parameters);
         let (roll, pitch) = inclination(&motion.down);
         let [roll_rate, pitch_rate, _] = motion.gyro;
         let pitch = pitch - walk.lean;
@@ -92,20 +94,21 @@ impl SineWalk {
         let yaw = walk.turn_stride * self.velocity.turn * per_speed;
         let sway = walk.sway * libm::sin(self.clock + walk.sway_phase) * self.stepping;
         let ankle_sway = walk.ankle_sway * libm::sin(self.clock) * self.stepping;
-        for (leg, foot, side) in [(LEFT_LEG, Foot::Left, 1.0), (RIGHT_LEG, Foot::Right, -1.0)] {
+        for (foot, side) in [(Foot::Left, 1.0), (Foot::Right, -1.0)] {
+            let leg = robot.leg(foot);
             let clock = if foot == Foot::Left { self.clock } else { self.clock + PI };
             let lift = (libm::sin(clock) - walk.support) / (1.0 - walk.support);
             let lift = walk.lift * lift.max(0.0) * self.stepping;
             let swing = swing(clock + walk.phase, walk.linear);
             let place = Vector3::new(
                 walk.foot + ahead * swing,
-                side * (BESIDE + walk.spread) + left * swing + sway,
+                side * (robot.beside + walk.spread) + left * swing + sway,
                 lift - walk.height,
             );
             let turned = UnitQuaternion::new(Vector3::new(0.0, 0.0, yaw * swing))
                 * UnitQuaternion::new(Vector3::new(0.0, -walk.lean, 0.0));
-            let sole = Isometry3::from_parts((HIPS + place).into(), turned);
-            angles[leg..leg + 6].copy_from_slice(&leg_angles(foot, &sole));
+            let sole = Isometry3::from_parts((robot.hips + place).into(), turned);
+            angles[leg..leg + 6].copy_from_slice(&robot.leg_angles(foot, &sole));
             angles[leg] += walk.hip_pitch * pitch + walk.hip_pitch_rate * pitch_rate;
             angles[leg + 1] += walk.hip_roll * roll + walk.hip_roll_rate * roll_rate;
             angles[leg + 4] += walk.ankle_pitch * pitch + walk.ankle_pitch_rate * pitch_rate;
@@ -142,24 +145,25 @@ impl WalkEngine for SineWalk {
         let angles = self.angles(motion);
         let SineParameters { leg_stiffness, leg_damping, other_stiffness, other_damping, .. } =
             self.parameters;
-        for (joint, motor) in motors.iter_mut().enumerate() {
-            let (stiffness, damping) = match joint < LEFT_LEG {
+        for (joint, motor) in motors.iter_mut().enumerate().take(self.robot.joint_count()) {
+            let (stiffness, damping) = match joint < self.robot.left_leg {
                 true => (other_stiffness, other_damping),
                 false => (leg_stiffness, leg_damping),
             };
-            let angle = limits(joint).clamp(angles[joint]);
+            let angle = self.robot.limits(joint).clamp(angles[joint]);
             *motor = MotorCommand { angle, stiffness, damping, ..MotorCommand::default() };
         }
     }
 
     fn reset(&mut self) {
-        *self = SineWalk::new(self.parameters);
+        *self = SineWalk::new(self.robot, self.parameters);
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::{K1, T1};
 
     fn run(walk: &mut SineWalk, velocity: WalkVelocity, cycles: usize) -> Vec<JointValues> {
         let mut motors = [MotorCommand::default(); JOINTS];
@@ -172,24 +176,38 @@ mod tests {
 
     #[test]
     fn it_crouches_without_a_jump_and_stands_until_a_command_to_walk() {
-        let mut walk = SineWalk::new(SineParameters::own().unwrap());
-        let angles = run(&mut walk, WalkVelocity::default(), 100);
-        let knees = |angles: &JointValues| (angles[LEFT_LEG + 3], angles[RIGHT_LEG + 3]);
-        assert!(knees(&angles[0]).0 < 0.1);
-        assert_eq!(knees(&angles[99]), knees(&angles[60]));
-        assert!(knees(&angles[99]).0 > 0.5 && knees(&angles[99]).0 == knees(&angles[99]).1);
+        for robot in Humanoid::ALL {
+            let mut walk = SineWalk::new(robot, SineParameters::own(robot).unwrap());
+            let angles = run(&mut walk, WalkVelocity::default(), 100);
+            let knees = |angles: &JointValues| (angles[robot.left_leg + 3], angles[robot.right_leg + 3]);
+            assert!(knees(&angles[0]).0 < 0.1);
+            assert_eq!(knees(&angles[99]), knees(&angles[60]));
+            assert!(knees(&angles[99]).0 > 0.5 && knees(&angles[99]).0 == knees(&angles[99]).1);
+        }
     }
 
     #[test]
     fn the_legs_step_in_turn_and_stop_after_the_command() {
-        let mut walk = SineWalk::new(SineParameters::own().unwrap());
-        run(&mut walk, WalkVelocity::default(), 50);
-        let ahead = run(&mut walk, WalkVelocity { x: 0.2, ..WalkVelocity::default() }, 200);
-        let is_lifted = |angles: &&JointValues, leg: usize| angles[leg + 3] > ahead[0][leg + 3] + 0.2;
-        let lifted = |leg| ahead[100..].iter().filter(|angles| is_lifted(angles, leg)).count();
-        assert!(lifted(LEFT_LEG) > 20 && lifted(RIGHT_LEG) > 20);
-        assert!(ahead.iter().all(|angles| (angles[LEFT_LEG + 3] - angles[RIGHT_LEG + 3]).abs() < 0.5));
-        let stand = run(&mut walk, WalkVelocity::default(), 150);
-        assert_eq!(stand[149], stand[140]);
+        for robot in Humanoid::ALL {
+            let (left, right) = (robot.left_leg, robot.right_leg);
+            let mut walk = SineWalk::new(robot, SineParameters::own(robot).unwrap());
+            run(&mut walk, WalkVelocity::default(), 50);
+            let ahead = run(&mut walk, WalkVelocity { x: 0.2, ..WalkVelocity::default() }, 200);
+            let is_lifted = |angles: &&JointValues, leg: usize| angles[leg + 3] > ahead[0][leg + 3] + 0.2;
+            let lifted = |leg| ahead[100..].iter().filter(|angles| is_lifted(angles, leg)).count();
+            assert!(lifted(left) > 20 && lifted(right) > 20);
+            assert!(ahead.iter().all(|angles| (angles[left + 3] - angles[right + 3]).abs() < 0.5));
+            let stand = run(&mut walk, WalkVelocity::default(), 150);
+            assert_eq!(stand[149], stand[140]);
+        }
+    }
+
+    #[test]
+    fn joints_that_a_robot_does_not_have_are_left_alone() {
+        let mut walk = SineWalk::new(&K1, SineParameters::own(&T1).unwrap());
+        let mut motors = [MotorCommand::default(); JOINTS];
+        walk.advance(WalkVelocity::default(), &Motion::STILL, &mut motors);
+        let commanded = motors.iter().filter(|motor| motor.stiffness > 0.0).count();
+        assert_eq!((commanded, motors[22]), (22, MotorCommand::default()));
     }
 }

@@ -3,8 +3,8 @@
 use monas_robot::Limits;
 use nalgebra::Vector3;
 
-use crate::anatomy::{JOINTS, JointValues};
 use crate::effector::MotorCommand;
+use crate::humanoid::{JOINTS, JointValues};
 
 /// A velocity of the robot in its own frame.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]

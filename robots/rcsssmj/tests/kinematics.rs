@@ -1,12 +1,13 @@
-//! The kinematics of the T1 against the physics model of the server, if Python has it.
+//! The kinematics of the robots against the physics model of the server, if Python has it.
 #![allow(clippy::unwrap_used)] // tests
 
 use std::fmt::Write as _;
 use std::io::Write as _;
 use std::process::{Command, Stdio};
 
-use monas_rcsssmj::kinematics::{Foot, camera, joint_origin, sole};
-use monas_rcsssmj::{JOINTS, JointValues, T1, centre_of_mass};
+use monas_rcsssmj::kinematics::Foot;
+use monas_rcsssmj::{Humanoid, JOINTS, JointValues};
+use monas_robot::Limits;
 use nalgebra::Point3;
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg32;
@@ -14,8 +15,8 @@ use rand_pcg::Pcg32;
 /// Random postures, and the number of points of each.
 const POSTURES: usize = 500;
 const POINTS: usize = 5;
-/// The greatest error, m, of each point. The server's model turns the arms by half a milliradian,
-/// which the anatomy leaves out.
+/// The greatest error, m, of each point. The server's model turns the arms of the T1 by half a
+/// milliradian, which the anatomy leaves out.
 const BOUNDS: [(&str, f64); POINTS] = [
     ("left sole", 1e-6),
     ("right sole", 1e-6),
@@ -27,14 +28,14 @@ const BOUNDS: [(&str, f64); POINTS] = [
 const LEFT_ELBOW: usize = 5;
 
 /// Where the server's physics has the points; none, loudly, without its model.
-fn truth(postures: &[JointValues]) -> Option<Vec<[Point3<f64>; POINTS]>> {
+fn truth(robot: &Humanoid, postures: &[JointValues]) -> Option<Vec<[Point3<f64>; POINTS]>> {
     let mut text = String::new();
     for angles in postures {
-        angles.iter().for_each(|angle| write!(text, "{angle} ").unwrap());
+        angles[..robot.joint_count()].iter().for_each(|angle| write!(text, "{angle} ").unwrap());
         text.push('\n');
     }
     let mut command = Command::new("python3");
-    command.args(["-c", include_str!("poses.py")]).current_dir(std::env::temp_dir());
+    command.args(["-c", include_str!("poses.py"), robot.name()]).current_dir(std::env::temp_dir());
     let process = command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::null()).spawn();
     let answer = process.and_then(|mut process| {
         // A program that ends at once, without the packages, does not read.
@@ -54,32 +55,39 @@ fn truth(postures: &[JointValues]) -> Option<Vec<[Point3<f64>; POINTS]>> {
 
 #[test]
 fn points_of_the_body_are_where_the_servers_physics_has_them() {
+    for robot in Humanoid::ALL {
+        compare(robot);
+    }
+}
+
+fn compare(robot: &Humanoid) {
     let mut chance = Pcg32::seed_from_u64(1);
-    let limits = T1::joint_limits();
     let posture = |_| {
         std::array::from_fn::<f64, JOINTS, _>(|joint| {
             let share = f64::from(chance.next_u32()) / f64::from(u32::MAX);
-            limits[joint].low + share * (limits[joint].high - limits[joint].low)
+            let has_joint = joint < robot.joint_count();
+            let limits = if has_joint { robot.limits(joint) } else { Limits::symmetric(0.0) };
+            limits.low + share * (limits.high - limits.low)
         })
     };
     let postures: Vec<JointValues> = (0..POSTURES).map(posture).collect();
-    let Some(truth) = truth(&postures) else { return };
+    let Some(truth) = truth(robot, &postures) else { return };
     assert_eq!(truth.len(), POSTURES);
-    println!("| point | mean error, mm | greatest error, mm |\n|---|---|---|");
+    println!("{}:\n| point | mean error, mm | greatest error, mm |\n|---|---|---|", robot.name());
     for (point, (name, bound)) in BOUNDS.into_iter().enumerate() {
         let errors = postures.iter().zip(&truth).map(|(angles, truth)| {
             let own = [
-                sole(Foot::Left, angles),
-                sole(Foot::Right, angles),
-                camera(angles),
-                joint_origin(LEFT_ELBOW, angles),
-                centre_of_mass(angles),
+                robot.sole(Foot::Left, angles),
+                robot.sole(Foot::Right, angles),
+                robot.camera(angles),
+                robot.joint_origin(LEFT_ELBOW, angles),
+                robot.centre_of_mass(angles),
             ];
             (own[point] - truth[point]).norm()
         });
         let (sum, greatest) =
             errors.fold((0.0, 0.0_f64), |(sum, most), error| (sum + error, most.max(error)));
         println!("| {name} | {:.4} | {:.4} |", 1e3 * sum / POSTURES as f64, 1e3 * greatest);
-        assert!(greatest < bound, "{name}: {greatest} m");
+        assert!(greatest < bound, "{} {name}: {greatest} m", robot.name());
     }
 }

@@ -1,28 +1,29 @@
-//! A T1 on the soccer server, if the program `rcssservermj` is there.
+//! Robots on the soccer server, if the program `rcssservermj` is there.
 #![allow(clippy::unwrap_used)] // tests
 
 use std::collections::BTreeMap;
 use std::process::Stdio;
 
-use monas_rcsssmj::T1;
 use monas_rcsssmj::monitor::Command;
+use monas_rcsssmj::{Booster, Humanoid, K1, T1};
 use monas_robot::{Actuators, BodySite, Percepts, Posture, Robot, conformance};
 use narukom::Timestamp;
 
-/// A robot with the project's own walk; none, loudly, without the server.
-fn robot() -> Option<T1> {
+/// A robot with its own walk; none, loudly, without the server.
+fn start(robot: &Humanoid) -> Option<Booster> {
     let mut help = std::process::Command::new("rcssservermj");
     help.arg("--help").current_dir(std::env::temp_dir()).stdout(Stdio::null()).stderr(Stdio::null());
     if !help.status().is_ok_and(|status| status.success()) {
         eprintln!("\n!! SKIPPED: no rcssservermj in PATH; `pip install rcsssmj==0.2.1` brings it\n");
         return None;
     }
-    let options = BTreeMap::from([("start_x".to_owned(), "-12".to_owned())]);
+    let options = [("start_x", "-12"), ("robot", robot.name())];
+    let options = BTreeMap::from(options.map(|(name, value)| (name.to_owned(), value.to_owned())));
     Some(monas_rcsssmj::open(&BodySite { options, ..BodySite::default() }).unwrap())
 }
 
 /// Runs for a time with a command; returns the odometry: x, y and heading.
-fn run(robot: &mut T1, cycle: &mut u64, seconds: f64, command: &Actuators) -> [f64; 3] {
+fn run(robot: &mut Booster, cycle: &mut u64, seconds: f64, command: &Actuators) -> [f64; 3] {
     let (mut percepts, mut way) = (Percepts::default(), [0.0; 3]);
     for _ in 0..(seconds * 50.0) as usize {
         *cycle += 1;
@@ -40,9 +41,9 @@ fn run(robot: &mut T1, cycle: &mut u64, seconds: f64, command: &Actuators) -> [f
     way
 }
 
-#[test]
-fn its_own_walk_goes_ahead_and_turns_as_commanded_and_the_odometry_follows() {
-    let Some(mut robot) = robot() else { return };
+/// Its own walk goes ahead and turns as commanded, and the odometry follows.
+fn walks(robot: &Humanoid) {
+    let Some(mut robot) = start(robot) else { return };
     let mut cycle = 0;
     let ([x, y, _], heading) = (robot.true_position(), robot.true_heading());
     let felt = run(&mut robot, &mut cycle, 12.0, &Actuators { walk_x: 0.42, ..Actuators::default() });
@@ -59,14 +60,34 @@ fn its_own_walk_goes_ahead_and_turns_as_commanded_and_the_odometry_follows() {
 }
 
 #[test]
-fn it_is_a_body_like_any_other() {
-    let Some(mut robot) = robot() else { return };
-    conformance::check(&mut robot);
+fn a_t1_walks_ahead_and_turns_as_commanded_and_the_odometry_follows() {
+    walks(&T1);
+}
+
+#[test]
+fn a_k1_walks_ahead_and_turns_as_commanded_and_the_odometry_follows() {
+    walks(&K1);
+}
+
+#[test]
+fn robots_are_bodies_like_any_other() {
+    for robot in Humanoid::ALL {
+        let Some(mut robot) = start(robot) else { return };
+        conformance::check(&mut robot);
+    }
+}
+
+#[test]
+fn the_server_goes_on_when_a_k1_touches_the_ball() {
+    let Some(mut robot) = start(&K1) else { return };
+    let (mut cycle, [x, y, _]) = (0, robot.true_position());
+    robot.instruct(Command::PlaceBall { at: [x + 1.0, y + 0.1, 0.11], velocity: [-2.0, 0.0, 0.0] });
+    run(&mut robot, &mut cycle, 4.0, &Actuators::default());
 }
 
 /// What a robot feels in a run with falls and placements, bit for bit.
-fn felt() -> Option<Vec<[u64; 4]>> {
-    let mut robot = robot()?;
+fn felt(robot: &Humanoid) -> Option<Vec<[u64; 4]>> {
+    let mut robot = start(robot)?;
     let (mut percepts, mut felt) = (Percepts::default(), Vec::new());
     for cycle in 1..=700 {
         let now = Timestamp::from_nanos(cycle * 20_000_000);
@@ -88,7 +109,9 @@ fn felt() -> Option<Vec<[u64; 4]>> {
 
 #[test]
 fn two_runs_are_equal_bit_for_bit() {
-    let (Some(one), Some(other)) = (felt(), felt()) else { return };
-    let first = one.iter().zip(&other).position(|(one, other)| one != other);
-    assert_eq!(first, None, "the first cycle that differs");
+    for robot in Humanoid::ALL {
+        let (Some(one), Some(other)) = (felt(robot), felt(robot)) else { return };
+        let first = one.iter().zip(&other).position(|(one, other)| one != other);
+        assert_eq!(first, None, "{}: the first cycle that differs", robot.name());
+    }
 }

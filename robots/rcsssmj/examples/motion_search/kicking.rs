@@ -4,19 +4,21 @@ use std::error::Error;
 
 use monas_rcsssmj::kinematics::Foot;
 use monas_rcsssmj::walk::{Motors, WalkEngine, WalkVelocity};
-use monas_rcsssmj::{Kick, KickParameters, SineParameters, SineWalk};
+use monas_rcsssmj::{Humanoid, K1, Kick, KickParameters, SineParameters, SineWalk};
 use rand_core::Rng;
 use rand_pcg::Pcg32;
 
 use crate::world::{CYCLE, World};
-use crate::{Motion, Searched};
+use crate::{Motion, Searched, begin};
 
 /// The kick, from the stand of the project's own walk.
 pub(crate) struct Kicking {
-    pub(crate) walk: SineParameters,
+    robot: &'static Humanoid,
+    walk: SineWalk,
+    searched: Vec<Searched>,
 }
 
-/// Where the search begins: what an earlier one has found for one foot, rounded.
+/// Where the search begins for the T1: what an earlier one has found for one foot, rounded.
 const SEARCHED: &[Searched] = &[
     ("ball_x", 0.21, 0.014),
     ("ball_y", 0.1, 0.0105),
@@ -48,6 +50,32 @@ const SEARCHED: &[Searched] = &[
     ("hip_roll_rate", 0.092, 0.014),
 ];
 
+/// Where it begins elsewhere for the K1: the kick of the T1, made smaller by the length of the
+/// legs.
+const K1_BEGIN: &[(&str, f64)] = &[
+    ("ball_x", 0.23),
+    ("ball_y", 0.13),
+    ("height", 0.465),
+    ("foot", -0.01),
+    ("lean", 0.01),
+    ("shift", 0.055),
+    ("lift", 0.1),
+    ("raise", 0.08),
+    ("inward", -0.05),
+    ("ahead", 0.25),
+    ("toes", 0.2),
+    ("shifting", 0.7),
+    ("lifting", 0.12),
+    ("swinging", 0.03),
+    ("ankle_pitch", 1.0),
+    ("ankle_pitch_rate", 0.1),
+    ("hip_pitch", 0.6),
+    ("hip_pitch_rate", 0.06),
+    ("ankle_roll", 0.1),
+    ("ankle_roll_rate", -0.05),
+    ("hip_roll", 0.6),
+];
+
 /// What is not searched.
 const FIXED: [(&str, f64); 4] = [("still", 1.2), ("blending", 0.4), ("stiffness", 200.0), ("damping", 5.0)];
 
@@ -55,8 +83,6 @@ const FIXED: [(&str, f64); 4] = [("still", 1.2), ("blending", 0.4), ("stiffness"
 const KICKS: usize = 6;
 /// By how much the place of the ball differs from that of the kick, m.
 const SPREAD: f64 = 0.03;
-/// From the torso to the middle between the hips, m.
-const HIPS: f64 = 0.0625;
 /// How long the robot stands before a kick, to twice that, s; after it the robot walks a little.
 const STANDING: f64 = 1.0;
 const ROLLING: f64 = 3.0;
@@ -76,7 +102,7 @@ const INCLINATION: f64 = 10.0;
 
 impl Motion for Kicking {
     fn searched(&self) -> &[Searched] {
-        SEARCHED
+        &self.searched
     }
 
     fn cost(&self, values: &[f64], world: &mut World, chance: &mut Pcg32) -> Result<f64, Box<dyn Error>> {
@@ -86,9 +112,9 @@ impl Motion for Kicking {
             // The feet differ: the masses of the legs do.
             let (foot, side) = if trial % 2 == 0 { (Foot::Left, 1.0) } else { (Foot::Right, -1.0) };
             let mut spread = || SPREAD * (2.0 * f64::from(chance.next_u32()) / f64::from(u32::MAX) - 1.0);
-            let ball = [HIPS + kick.ball_x + spread(), side * (kick.ball_y + spread())];
+            let ball = [self.robot.hips().x + kick.ball_x + spread(), side * (kick.ball_y + spread())];
             let standing = STANDING + STANDING * f64::from(chance.next_u32()) / f64::from(u32::MAX);
-            cost += self.trial_cost(&mut Kick::new(kick, foot), ball, standing, world)?;
+            cost += self.trial_cost(&mut Kick::new(self.robot, kick, foot), ball, standing, world)?;
         }
         Ok(cost / KICKS as f64)
     }
@@ -99,6 +125,12 @@ impl Motion for Kicking {
 }
 
 impl Kicking {
+    /// The kick of a robot, from the stand of its walk.
+    pub(crate) fn of(robot: &'static Humanoid, walk: SineParameters) -> Kicking {
+        let elsewhere: &[_] = if *robot == K1 { K1_BEGIN } else { &[] };
+        Kicking { robot, walk: SineWalk::new(robot, walk), searched: begin(SEARCHED, elsewhere) }
+    }
+
     fn trial_cost(
         &self,
         kick: &mut Kick,
@@ -106,7 +138,7 @@ impl Kicking {
         standing: f64,
         world: &mut World,
     ) -> Result<f64, Box<dyn Error>> {
-        let mut walk = SineWalk::new(self.walk);
+        let mut walk = self.walk.clone();
         let mut motors = Motors::default();
         let mut state = world.reset(ball)?;
         let cycles = |seconds: f64| (seconds / CYCLE) as usize;

@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! cargo run --release -p monas-rcsssmj --example motion_search -- walk --seed 1 --generations 60
+//! cargo run --release -p monas-rcsssmj --example motion_search -- walk --robot K1 --generations 60
 //! ```
 //!
 //! The package rcsssmj of PyPI has to be installed: a child process makes the cycles of the server,
@@ -17,6 +18,7 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use cmaes::{CMAESOptions, DVector};
+use monas_rcsssmj::{Humanoid, SineParameters};
 use rand_core::SeedableRng;
 use rand_pcg::Pcg32;
 use world::World;
@@ -41,20 +43,25 @@ pub(crate) trait Motion: Sync {
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let number = |name: &str, default: u64| {
+    let option = |name: &str| {
         let at = arguments.iter().position(|argument| argument == name);
-        at.map_or(Ok(default), |at| arguments.get(at + 1).map_or("", |text| text).parse())
+        at.map(|at| arguments.get(at + 1).map_or("", |text| text))
     };
+    let number = |name: &str, default: u64| option(name).map_or(Ok(default), str::parse);
     let (seed, generations) = (number("--seed", 1)?, number("--generations", 60)?);
+    let robot = option("--robot").unwrap_or("T1");
+    let robot =
+        Humanoid::named(robot).ok_or_else(|| format!("there is no robot `{robot}`, but T1 and K1"))?;
     let motion: &dyn Motion = match arguments.first().map(String::as_str) {
-        Some("walk") => &walking::Walking,
-        Some("kick") => &kicking::Kicking { walk: monas_rcsssmj::SineParameters::own()? },
+        Some("walk") => &walking::Walking::of(robot),
+        Some("kick") => &kicking::Kicking::of(robot, SineParameters::own(robot)?),
         _ => return Err("expected `walk` or `kick`".into()),
     };
-    Search { motion, seed, worlds: Mutex::default(), failure: Mutex::default() }.run(generations)
+    Search { robot, motion, seed, worlds: Mutex::default(), failure: Mutex::default() }.run(generations)
 }
 
 struct Search<'a> {
+    robot: &'static Humanoid,
     motion: &'a dyn Motion,
     seed: u64,
     worlds: Mutex<Vec<World>>,
@@ -109,7 +116,7 @@ impl Search<'_> {
 
     fn cost(&self, values: &[f64], trial: u64) -> Result<f64, Box<dyn Error>> {
         let idle = self.worlds.lock().ok().and_then(|mut worlds| worlds.pop());
-        let mut world = idle.map_or_else(World::new, Ok)?;
+        let mut world = idle.map_or_else(|| World::new(self.robot), Ok)?;
         let mut chance = Pcg32::seed_from_u64(self.seed ^ (trial << 20));
         let cost = self.motion.cost(values, &mut world, &mut chance)?;
         if let Ok(mut worlds) = self.worlds.lock() {
@@ -117,6 +124,15 @@ impl Search<'_> {
         }
         Ok(cost)
     }
+}
+
+/// The parameters with which the search of a robot begins: some begin elsewhere than for the T1.
+pub(crate) fn begin(searched: &[Searched], elsewhere: &[(&str, f64)]) -> Vec<Searched> {
+    let start = |&(name, start, step): &Searched| {
+        let other = elsewhere.iter().find(|(other, _)| *other == name);
+        (name, other.map_or(start, |(_, start)| *start), step)
+    };
+    searched.iter().map(start).collect()
 }
 
 /// The values at a point of the search space, with four digits.

@@ -1,12 +1,14 @@
-"""The world of the soccer server with one T1 and the ball, without the server's sockets.
+"""The world of the soccer server with one robot and the ball, without the server's sockets.
+
+The arguments are the name of the robot, T1 or K1, and the height of its torso in a straight stand.
 
 Reads commands from standard input and answers each with the state on standard output, both as
 64 bit numbers, the lowest byte first. The first number of a command says what it is:
 
 0  puts the robot upright at the origin, and the ball to a place: x and y, m.
-1  makes one cycle of the server with commands to all motors: 23 angles, stiffnesses, dampings.
+1  makes one cycle of the server with commands to all motors: angles, stiffnesses, dampings.
 
-The answer: 23 angles and 23 velocities of joints, the rates of the gyroscope and accelerations of
+The answer: angles and velocities of the joints, the rates of the gyroscope and accelerations of
 the torso, cut off after the digits that the server sends; x, y and z of the torso, its heading and
 the cosine of its inclination; x and y of the ball.
 """
@@ -24,18 +26,20 @@ from rcsssmj.games.soccer.sim.soccer_sim import SoccerSimulation
 from rcsssmj.games.soccer.soccer_fields import create_soccer_field
 from rcsssmj.games.soccer.soccer_rules import create_soccer_rule_book
 
+MODEL = sys.argv[1]
+UPRIGHT = float(sys.argv[2])
 MOTORS = ["he1", "he2"]
-MOTORS += [f"{side}ae{joint}" for side in "lr" for joint in range(1, 5)] + ["te1"]
+MOTORS += [f"{side}ae{joint}" for side in "lr" for joint in range(1, 5)]
+MOTORS += ["te1"] if MODEL == "T1" else []
 MOTORS += [f"{side}le{joint}" for side in "lr" for joint in range(1, 7)]
 SUBSTEPS = 4
-UPRIGHT = 0.6735
 BALL = 0.11
 
 
 class Robot:
     """What a new agent tells the server of itself."""
 
-    model_name = "T1"
+    model_name = MODEL
     team_name = "Monas"
     player_no = 2
 
@@ -84,7 +88,7 @@ def main():
             data.qpos[ball : ball + 7] = (x, y, BALL, 1, 0, 0, 0)
             mujoco.mj_forward(model, data)
         else:
-            target, stiffness, damping = np.frombuffer(inputs.read(8 * 69), "<f8").reshape(3, 23)
+            target, stiffness, damping = np.frombuffer(inputs.read(24 * len(MOTORS)), "<f8").reshape(3, -1)
             data.ctrl[angle] = np.radians(np.round(np.degrees(target), 3))
             data.ctrl[velocity], data.ctrl[torque] = 0, 0
             model.actuator_gainprm[angle, 0], model.actuator_biasprm[angle, 1] = stiffness, -stiffness

@@ -3,17 +3,22 @@
 use std::error::Error;
 
 use monas_rcsssmj::walk::{Motors, Ramp, WalkEngine, WalkVelocity};
-use monas_rcsssmj::{SineParameters, SineWalk};
+use monas_rcsssmj::{Humanoid, K1, SineParameters, SineWalk};
 use rand_core::Rng;
 use rand_pcg::Pcg32;
 
 use crate::world::{CYCLE, State, World};
-use crate::{Motion, Searched};
+use crate::{Motion, Searched, begin};
 
-/// The walk.
-pub(crate) struct Walking;
+/// The walk of a robot.
+pub(crate) struct Walking {
+    robot: &'static Humanoid,
+    searched: Vec<Searched>,
+    /// The greatest speed ahead, m/s.
+    fast: f64,
+}
 
-/// Where the search begins: what an earlier one has found, rounded.
+/// Where the search begins for the T1: what an earlier one has found, rounded.
 const SEARCHED: &[Searched] = &[
     ("frequency", 1.9, 0.12),
     ("height", 0.45, 0.009),
@@ -48,22 +53,49 @@ const SEARCHED: &[Searched] = &[
     ("starting", 0.6, 0.09),
 ];
 
-/// The greatest speed ahead, m/s.
-const FAST: f64 = 0.8;
-
-/// What is not searched.
-const FIXED: [(&str, f64); 8] = [
-    ("forwards", FAST),
-    ("backwards", 0.2),
-    ("sideways", 0.2),
-    ("turning", 0.8),
-    ("leg_stiffness", 200.0),
-    ("leg_damping", 5.0),
-    ("other_stiffness", 20.0),
-    ("other_damping", 1.0),
+/// Where it begins elsewhere for the K1: the walk of the T1, made smaller by the length of the
+/// legs.
+const K1_BEGIN: &[(&str, f64)] = &[
+    ("frequency", 2.2),
+    ("height", 0.4),
+    ("foot", 0.01),
+    ("lean", 0.02),
+    ("lift", 0.06),
+    ("support", 0.24),
+    ("phase", 0.7),
+    ("sway", -0.006),
+    ("sway_phase", -2.1),
+    ("ankle_sway", 0.1),
+    ("spread", 0.025),
+    ("stride", 1.0),
+    ("drift", 0.05),
+    ("side_stride", 1.3),
+    ("turn_stride", 1.4),
+    ("ankle_pitch", 1.5),
+    ("ankle_pitch_rate", 0.08),
+    ("hip_pitch", 0.75),
+    ("hip_pitch_rate", 0.06),
+    ("ankle_roll", -0.16),
+    ("ankle_roll_rate", 0.08),
+    ("hip_roll", 0.5),
+    ("hip_roll_rate", -0.013),
+    ("step_pitch", 0.9),
+    ("step_pitch_rate", 0.09),
+    ("step_roll", 0.75),
+    ("step_roll_rate", 0.3),
+    ("acceleration", 0.7),
+    ("turn_acceleration", 4.0),
+    ("starting", 0.4),
 ];
 
-/// Seconds, and the velocities in them: ahead, to the left, and of turning.
+/// The greatest speed ahead, m/s, of a T1 and of a K1.
+const FAST: f64 = 0.8;
+const K1_FAST: f64 = 0.5;
+
+/// What is not searched, besides the greatest speed ahead and the gains of the motors.
+const FIXED: [(&str, f64); 3] = [("backwards", 0.2), ("sideways", 0.2), ("turning", 0.8)];
+
+/// Seconds, and the velocities in them: ahead, at most the greatest, to the left, and of turning.
 type Part = (f64, [f64; 3]);
 
 const TRIALS: [&[Part]; 3] = [
@@ -111,50 +143,66 @@ const INCLINATION: f64 = 15.0;
 /// A torso with a smaller cosine of its inclination has fallen.
 const UPRIGHT: f64 = 0.54;
 
+impl Walking {
+    pub(crate) fn of(robot: &'static Humanoid) -> Walking {
+        let (elsewhere, fast): (&[_], _) = if *robot == K1 { (K1_BEGIN, K1_FAST) } else { (&[], FAST) };
+        Walking { robot, searched: begin(SEARCHED, elsewhere), fast }
+    }
+
+    fn parameters(&self, values: &[f64]) -> SineParameters {
+        let mut walk = SineParameters::default();
+        let searched = self.searched.iter().map(|(name, ..)| *name).zip(values.iter().copied());
+        let (leg, other) = (self.robot.gains(self.robot.joint_count() - 1), self.robot.gains(0));
+        let gains = [
+            ("leg_stiffness", leg.0),
+            ("leg_damping", leg.1),
+            ("other_stiffness", other.0),
+            ("other_damping", other.1),
+        ];
+        for (name, value) in searched.chain(FIXED).chain(gains).chain([("forwards", self.fast)]) {
+            walk.set(name, value);
+        }
+        walk
+    }
+}
+
 impl Motion for Walking {
     fn searched(&self) -> &[Searched] {
-        SEARCHED
+        &self.searched
     }
 
     fn cost(&self, values: &[f64], world: &mut World, chance: &mut Pcg32) -> Result<f64, Box<dyn Error>> {
-        let walk = parameters(values);
+        let walk = SineWalk::new(self.robot, self.parameters(values));
         let mut cost = 0.0;
         for trial in TRIALS {
-            cost += trial_cost(walk, trial, world, chance)?;
+            cost += trial_cost(&walk, trial, world, chance)?;
         }
         Ok(cost / TRIALS.len() as f64)
     }
 
     fn file(&self, values: &[f64]) -> String {
-        parameters(values).to_toml()
+        self.parameters(values).to_toml()
     }
-}
-
-fn parameters(values: &[f64]) -> SineParameters {
-    let mut walk = SineParameters::default();
-    let searched = SEARCHED.iter().map(|(name, ..)| *name).zip(values.iter().copied());
-    for (name, value) in searched.chain(FIXED) {
-        walk.set(name, value);
-    }
-    walk
 }
 
 fn trial_cost(
-    walk: SineParameters,
+    walk: &SineWalk,
     trial: &[Part],
     world: &mut World,
     chance: &mut Pcg32,
 ) -> Result<f64, Box<dyn Error>> {
-    let mut walker = Walker { walk: SineWalk::new(walk), ramp: Ramp::default(), motors: Motors::default() };
+    let mut walker = Walker { walk: walk.clone(), ramp: Ramp::default(), motors: Motors::default() };
     let mut state = world.reset([20.0, 0.0])?;
     let (mut deviation, mut inclination, mut cycles) = (0.0, 0.0, 0);
     let stand = [(STANDING, [0.0; 3])];
+    let fast = walk.gait().x.high;
     let parts: Vec<(usize, [f64; 3])> = stand
         .iter()
         .chain(trial)
         .map(|(seconds, velocity)| {
             let share = f64::from(chance.next_u32()) / f64::from(u32::MAX);
-            (((seconds + SPREAD * (2.0 * share - 1.0)) / CYCLE) as usize, *velocity)
+            let [x, y, turn] = *velocity;
+            (((seconds + SPREAD * (2.0 * share - 1.0)) / CYCLE) as usize, [x.min(fast), y, turn])
         })
         .collect();
     let total: usize = parts.iter().map(|(cycles, _)| cycles).sum();

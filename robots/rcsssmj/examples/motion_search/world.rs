@@ -5,10 +5,11 @@ use std::io::{Read, Write};
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 
 use monas_rcsssmj::walk::{Motion, Motors};
-use monas_rcsssmj::{Inertia, JOINTS};
+use monas_rcsssmj::{Humanoid, Inertia, JOINTS};
 
 const PROGRAM: &str = include_str!("physics.py");
-const NUMBERS: usize = 2 * JOINTS + 6 + 5 + 2;
+/// The numbers of a state after those of the joints.
+const REST: usize = 6 + 5 + 2;
 /// The period of the server, s.
 pub(crate) const CYCLE: f64 = 0.02;
 
@@ -27,8 +28,9 @@ pub(crate) struct State {
     pub(crate) ball: [f64; 2],
 }
 
-/// A T1 and a ball.
+/// A robot and a ball.
 pub(crate) struct World {
+    robot: &'static Humanoid,
     process: Child,
     commands: ChildStdin,
     states: ChildStdout,
@@ -38,11 +40,11 @@ pub(crate) struct World {
 }
 
 impl World {
-    /// Starts a world.
-    pub(crate) fn new() -> Result<World, Box<dyn Error>> {
+    /// Starts a world with a robot.
+    pub(crate) fn new(robot: &'static Humanoid) -> Result<World, Box<dyn Error>> {
         let mut command = Command::new("python3");
         command
-            .args(["-c", PROGRAM])
+            .args(["-c", PROGRAM, robot.name(), &robot.straight_height().to_string()])
             .current_dir(std::env::temp_dir())
             .stdin(Stdio::piped())
             .stdout(Stdio::piped());
@@ -50,7 +52,7 @@ impl World {
         let (Some(commands), Some(states)) = (process.stdin.take(), process.stdout.take()) else {
             return Err("python3 has no standard input or output".into());
         };
-        Ok(World { process, commands, states, inertia: Inertia::default(), motors: Motors::default() })
+        Ok(World { robot, process, commands, states, inertia: Inertia::default(), motors: Motors::default() })
     }
 
     /// Puts the robot upright at the origin, and the ball to a place.
@@ -63,13 +65,14 @@ impl World {
     /// Makes a cycle; the commands have effect in the next one.
     pub(crate) fn cycle(&mut self, motors: &Motors) -> Result<State, Box<dyn Error>> {
         let before = std::mem::replace(&mut self.motors, *motors);
+        let joints = self.robot.joint_count();
         let mut numbers = [1.0; 1 + 3 * JOINTS];
-        for (joint, motor) in before.iter().enumerate() {
+        for (joint, motor) in before.iter().enumerate().take(joints) {
             numbers[1 + joint] = motor.angle;
-            numbers[1 + JOINTS + joint] = motor.stiffness;
-            numbers[1 + 2 * JOINTS + joint] = motor.damping;
+            numbers[1 + joints + joint] = motor.stiffness;
+            numbers[1 + 2 * joints + joint] = motor.damping;
         }
-        self.send(&numbers)?;
+        self.send(&numbers[..1 + 3 * joints])?;
         self.receive()
     }
 
@@ -79,21 +82,21 @@ impl World {
     }
 
     fn receive(&mut self) -> Result<State, Box<dyn Error>> {
-        let mut bytes = [0; 8 * NUMBERS];
-        self.states.read_exact(&mut bytes).map_err(ended)?;
-        let (chunks, _) = bytes.as_chunks::<8>();
-        let numbers: [f64; NUMBERS] = std::array::from_fn(|index| f64::from_le_bytes(chunks[index]));
+        let joints = self.robot.joint_count();
+        let mut bytes = [0; 8 * (2 * JOINTS + REST)];
+        let bytes = &mut bytes[..8 * (2 * joints + REST)];
+        self.states.read_exact(bytes).map_err(ended)?;
+        let numbers: Vec<f64> =
+            bytes.as_chunks::<8>().0.iter().map(|bytes| f64::from_le_bytes(*bytes)).collect();
         let three = |first: usize| [numbers[first], numbers[first + 1], numbers[first + 2]];
-        let (gyro, acceleration) = (three(2 * JOINTS), three(2 * JOINTS + 3));
+        let all = |first: usize| {
+            std::array::from_fn(|joint| if joint < joints { numbers[first + joint] } else { 0.0 })
+        };
+        let (gyro, acceleration) = (three(2 * joints), three(2 * joints + 3));
         self.inertia.advance(gyro, acceleration, CYCLE);
-        let rest = 2 * JOINTS + 6;
+        let rest = 2 * joints + 6;
         Ok(State {
-            motion: Motion {
-                positions: std::array::from_fn(|joint| numbers[joint]),
-                velocities: std::array::from_fn(|joint| numbers[JOINTS + joint]),
-                gyro,
-                down: self.inertia.down(),
-            },
+            motion: Motion { positions: all(0), velocities: all(joints), gyro, down: self.inertia.down() },
             place: three(rest),
             heading: numbers[rest + 3],
             upright: numbers[rest + 4],
