@@ -152,9 +152,9 @@ parameters! {
         robot_range: "m" = 5.0 in 0.5 to 100.0;
         /// Probability that an object well within range and view is missed in one picture (chosen).
         sight_miss: "1" = 0.04 in 0.0 to 1.0;
-        /// How many times that probability is added in the worst light, which comes and goes within
-        /// half a minute, for each robot at other times; of finished sightings (constant light; a
-        /// hall with windows, chosen: 4, so that up to a fifth of the objects is missed).
+        /// How many times `sight_miss` is added to itself in the worst light, which comes and goes
+        /// within half a minute, for each robot at other times; of finished sightings (constant
+        /// light; a hall with windows, chosen: 4, so that up to a fifth of the objects is missed).
         light_change: "1" = 0.0 in 0.0 to 25.0;
         /// Time from the exposure of a picture to its delivery; time, head angles and contents are
         /// those of the exposure (an ideal camera; Nao: 0.06, of which 5 ms are half an exposure,
