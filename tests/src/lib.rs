@@ -64,7 +64,18 @@ pub const ATTACK_LOSS50: Variant =
 pub const ATTACK_RED_LOSS50: Variant =
     Variant { name: "attack_red_loss50", file: "tests/season/attack_loss50_red.xml" };
 
-/// Every variant.
+/// As [`MATCH`], with the latency and the errors of real cameras.
+pub const UNKIND: Variant = Variant { name: "unkind", file: "config/match_unkind.xml" };
+/// As [`STANDING`], with the latency and the errors of real cameras.
+pub const UNKIND_STANDING: Variant =
+    Variant { name: "unkind_standing", file: "tests/season/unkind_standing.xml" };
+/// As [`ATTACK`], with the latency and the errors of real cameras.
+pub const UNKIND_ATTACK: Variant = Variant { name: "unkind_attack", file: "tests/season/unkind_attack.xml" };
+
+/// The variants that are no part of the season.
+pub const OTHER_VARIANTS: [Variant; 3] = [UNKIND, UNKIND_STANDING, UNKIND_ATTACK];
+
+/// Every variant of the season.
 pub const VARIANTS: [Variant; 11] = [
     MATCH,
     STANDING,

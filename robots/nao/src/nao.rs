@@ -199,17 +199,10 @@ impl Robot for Nao {
             percepts.images = cameras.take(now, &angles);
         }
         if let Some(channels) = &mut self.channels
-            && let Err(error) = channels.receive(percepts)
+            && let Err(error) = channels.receive(now, percepts)
         {
             tracing::warn!("the simulated camera, referee and radio are gone: {error}");
             self.channels = None;
-        }
-        // The simulation has a clock of its own.
-        if let Some(sightings) = &mut percepts.sightings {
-            sightings.taken_at = now.as_nanos();
-        }
-        if let Some(images) = percepts.images.as_mut().filter(|_| self.cameras.is_none()) {
-            images.taken_at = now.as_nanos();
         }
         Ok(())
     }

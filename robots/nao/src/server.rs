@@ -117,7 +117,7 @@ impl LolaServer {
         self.percepts.clear_news();
         self.body.sense(now, &mut self.percepts)?;
         self.measure();
-        self.send()
+        self.send(now)
     }
 
     /// Each motor turns its joint towards the target, as fast as it can and if it is stiff.
@@ -174,13 +174,14 @@ impl LolaServer {
         packet.touch[Touch::RightFootRight as usize] = pressed(felt.right_bumper);
     }
 
-    fn send(&mut self) -> Result<(), Error> {
+    fn send(&mut self, now: Timestamp) -> Result<(), Error> {
         self.sensors.encode(&mut self.bytes);
         absent(self.lola.send(&self.bytes))?;
         let SimulatedChannels { camera, referee, radio } = &mut self.channels;
         let (sightings, images) = (self.percepts.sightings.take(), self.percepts.images.take());
         if sightings.is_some() || images.is_some() {
-            absent(camera.send(&SimulatedView { sightings, images }))?;
+            let sent_at = now.as_nanos();
+            absent(camera.send(&SimulatedView { sightings, images, sent_at }))?;
         }
         // Images do not fit into the buffer of a socket.
         absent(camera.flush().map(drop))?;

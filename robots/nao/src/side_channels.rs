@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use monas_robot::{Announcement, Heard, Images, Percepts, Said, Sightings};
+use narukom::Timestamp;
 
 use crate::error::Error;
 use crate::socket::{MessageSocket, Socket};
@@ -17,6 +18,22 @@ pub(crate) struct SimulatedView {
     pub(crate) sightings: Option<Sightings>,
     #[prost(message, optional, tag = "2")]
     pub(crate) images: Option<Images>,
+    /// When this is sent, in the time of the simulation as `taken_at`, nanoseconds.
+    #[prost(uint64, tag = "3")]
+    pub(crate) sent_at: u64,
+}
+
+impl SimulatedView {
+    /// The same in the time of the robot, which receives it now: a simulation has its own clock.
+    pub(crate) fn received(mut self, now: Timestamp) -> SimulatedView {
+        let sightings = self.sightings.as_mut().map(|it| &mut it.taken_at);
+        let images = self.images.as_mut().map(|it| &mut it.taken_at);
+        for taken_at in [sightings, images].into_iter().flatten() {
+            let age = self.sent_at.saturating_sub(*taken_at);
+            *taken_at = now.as_nanos().saturating_sub(age);
+        }
+        self
+    }
 }
 
 /// The simulation's ends of the sockets.
@@ -78,10 +95,11 @@ impl RobotChannels {
         }))
     }
 
-    /// Takes what has arrived: the newest sightings or images and announcement, and all radio
-    /// messages.
-    pub(crate) fn receive(&mut self, percepts: &mut Percepts) -> Result<(), Error> {
-        self.camera.receive(|SimulatedView { sightings, images }| {
+    /// Takes what has arrived until now: the newest sightings or images and announcement, and all
+    /// radio messages.
+    pub(crate) fn receive(&mut self, now: Timestamp, percepts: &mut Percepts) -> Result<(), Error> {
+        self.camera.receive(|view: SimulatedView| {
+            let SimulatedView { sightings, images, .. } = view.received(now);
             percepts.sightings = sightings.or(percepts.sightings.take());
             percepts.images = images.or(percepts.images.take());
         })?;
@@ -111,4 +129,22 @@ pub(crate) fn pair() -> Result<(SimulatedChannels, RobotChannels), Error> {
         radio: MessageSocket::new(radios),
     };
     Ok((simulated, robot))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_view_keeps_its_age_in_the_time_of_the_robot() {
+        let sightings = Some(Sightings { taken_at: 940, ..Sightings::default() });
+        let images = Some(Images { taken_at: 900, ..Images::default() });
+        let view = SimulatedView { sightings, images, sent_at: 1000 };
+        let received = |now| {
+            let SimulatedView { sightings, images, .. } = view.clone().received(Timestamp::from_nanos(now));
+            [sightings.unwrap().taken_at, images.unwrap().taken_at]
+        };
+        assert_eq!(received(7000), [6940, 6900]);
+        assert_eq!(received(1000), [940, 900], "the same clock");
+    }
 }

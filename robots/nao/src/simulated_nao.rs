@@ -69,9 +69,9 @@ impl Robot for SimulatedNao {
             self.control.receive(&self.sensors);
         }
         self.control.percepts(now, percepts);
-        self.channels.receive(percepts)?;
+        self.channels.receive(now, percepts)?;
         while self.server.send_rest_of_images()? {
-            self.channels.receive(percepts)?;
+            self.channels.receive(now, percepts)?;
         }
         Ok(())
     }

@@ -5,6 +5,10 @@
 //! elevation, not in the image plane; within these fields of view the difference is below the
 //! noise.
 
+mod faults;
+
+pub(crate) use faults::CameraFaults;
+
 use crate::pose::{Vector, direction_of, normalize_angle};
 use crate::rng::RandomStream;
 use crate::state::WorldView;
@@ -69,6 +73,8 @@ pub(crate) struct CameraView<'a> {
     pub(crate) scene: WorldView<'a>,
     /// The current colour of each team.
     pub(crate) colours: [TeamColour; 2],
+    /// How bad the light is: 0 for good light, at most 1.
+    pub(crate) darkness: f64,
 }
 
 /// The true position of an object relative to the camera's robot.
@@ -156,7 +162,9 @@ impl CameraView<'_> {
             return false;
         }
         let beyond = (2.0 * target.distance / target.range - 1.0).clamp(0.0, 1.0);
-        stream.chance((1.0 - self.physics().sight_miss) * (1.0 - beyond))
+        let physics = self.physics();
+        let miss = (physics.sight_miss * (1.0 + physics.light_change * self.darkness)).min(1.0);
+        stream.chance((1.0 - miss) * (1.0 - beyond))
     }
 
     fn in_view(&self, target: &VisibleObject) -> bool {
@@ -249,6 +257,7 @@ mod tests {
         physics: Physics,
         robots: Vec<RobotState>,
         ball: Vector,
+        darkness: f64,
     }
 
     fn robot(team: usize, pose: Pose) -> RobotState {
@@ -272,6 +281,7 @@ mod tests {
             physics,
             robots: vec![robot(0, Pose::default())],
             ball,
+            darkness: 0.0,
         }
     }
 
@@ -287,7 +297,7 @@ mod tests {
             };
             let mut sightings = Vec::new();
             let colours = [TeamColour::Blue, TeamColour::Red];
-            CameraView { robot: 0, scene, colours }.observe(stream, &mut sightings);
+            CameraView { robot: 0, scene, colours, darkness: self.darkness }.observe(stream, &mut sightings);
             sightings
         }
 
@@ -348,6 +358,18 @@ mod tests {
         let mut missing = stage(Vector::new(1.0, 0.0));
         missing.physics.sight_miss = 0.25;
         assert!((700..800).contains(&missing.balls(1000).len()));
+    }
+
+    #[test]
+    fn bad_light_multiplies_the_misses() {
+        let mut dark = stage(Vector::new(1.0, 0.0));
+        (dark.physics.sight_miss, dark.physics.light_change, dark.darkness) = (0.1, 3.0, 0.5);
+        // 0.1 * (1 + 3 * 0.5) = 0.25; four standard deviations of 1000 draws are 0.055.
+        assert!((695..805).contains(&dark.balls(1000).len()), "{}", dark.balls(1000).len());
+        dark.darkness = 0.0;
+        assert!((862..938).contains(&dark.balls(1000).len()), "{}", dark.balls(1000).len());
+        (dark.darkness, dark.physics.light_change) = (1.0, 25.0);
+        assert_eq!(dark.balls(1000).len(), 0, "at most every object is missed");
     }
 
     #[test]

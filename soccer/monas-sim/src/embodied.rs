@@ -7,6 +7,7 @@
 mod announce;
 mod body;
 mod image_camera;
+mod picture_queue;
 mod radio_channel;
 mod skill;
 

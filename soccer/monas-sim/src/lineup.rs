@@ -46,6 +46,16 @@ pub enum GoalColour {
     Yellow,
 }
 
+impl GoalColour {
+    /// The colour of the other goal.
+    pub fn opposite(self) -> Self {
+        match self {
+            Self::Blue => Self::Yellow,
+            Self::Yellow => Self::Blue,
+        }
+    }
+}
+
 /// The colour a team wears.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum TeamColour {
@@ -86,6 +96,14 @@ impl Side {
     /// The side on which a point with this y lies.
     pub fn of(y: f64) -> Self {
         if y >= 0.0 { Self::Left } else { Self::Right }
+    }
+
+    /// The other side.
+    pub fn opposite(self) -> Self {
+        match self {
+            Self::Left => Self::Right,
+            Self::Right => Self::Left,
+        }
     }
 }
 

@@ -4,7 +4,7 @@ use monas_robot::ObjectSet;
 
 use crate::arena::{Arena, BallObstacle};
 use crate::body::{BodyEvent, SimulatedBody};
-use crate::camera::CameraView;
+use crate::camera::{CameraFaults, CameraView};
 use crate::passes::PassTracker;
 use crate::pose::{Vector, rotate, shortened};
 use crate::referee::Referee;
@@ -49,6 +49,7 @@ pub struct SimulatedWorld {
 struct SensorState {
     noise: RandomStream,
     vision: RandomStream,
+    faults: CameraFaults,
     pictures: u64,
     turn: f64,
     /// The step until which a person holds the robot in the air.
@@ -524,13 +525,17 @@ impl SimulatedWorld {
 
     fn see(&mut self, robot: usize, senses: &mut Senses) {
         senses.sightings.clear();
-        let taken = (self.time() * self.now.physics.camera_rate + 1e-6) as u64;
+        let time = self.time();
+        let taken = (time * self.now.physics.camera_rate + 1e-6) as u64;
         let sensors = &mut self.sensors[robot];
         senses.new_picture = taken > sensors.pictures;
         sensors.pictures = taken;
         if senses.new_picture {
-            let camera = CameraView { robot, scene: self.now.scene(), colours: self.referee.colours() };
+            let darkness = sensors.faults.darkness(time);
+            let scene = self.now.scene();
+            let camera = CameraView { robot, scene, colours: self.referee.colours(), darkness };
             camera.observe(&mut sensors.vision, &mut senses.sightings);
+            sensors.faults.spoil(&camera, &mut senses.sightings);
         }
     }
 }
@@ -540,6 +545,7 @@ impl SensorState {
         Self {
             noise: RandomStream::new(seed, &format!("{path}/sensors")),
             vision: RandomStream::new(seed, &format!("{path}/vision")),
+            faults: CameraFaults::new(seed, path),
             pictures: 0,
             turn: 0.0,
             lifted_until: 0,

@@ -8,7 +8,7 @@ use monas_robot::{
 };
 use nalgebra::{Isometry2, Point2, Vector2};
 
-use crate::functionality::ball_filter::BallEstimate;
+use crate::functionality::ball_filter::{BallEstimate, BallSighting};
 use crate::functionality::field::{FieldModel, Goal};
 use crate::functionality::game;
 use crate::functionality::geometry::{self, heading};
@@ -241,6 +241,17 @@ pub fn odometry(sensors: &monas_robot::Sensors) -> Isometry2<f64> {
 /// The position of a sighted object in the robot's frame.
 pub(crate) fn position(sighting: &Sighting) -> Point2<f64> {
     geometry::polar(sighting.distance, sighting.bearing).into()
+}
+
+/// A sighting, as seen from the robot's pose now; it was made in the frame `then`.
+pub(crate) fn moved(sighting: &Sighting, then_from_now: &Isometry2<f64>) -> Sighting {
+    let now = then_from_now.inverse_transform_point(&position(sighting)).coords;
+    Sighting { distance: now.norm(), bearing: geometry::angle_of(&now), ..*sighting }
+}
+
+/// A sighting of a ball.
+pub(crate) fn ball_sighting(sighting: Sighting) -> BallSighting {
+    BallSighting { distance: sighting.distance, bearing: sighting.bearing }
 }
 
 /// A sighting of a landmark; none for other objects, and for a post that does not say of which

@@ -117,31 +117,33 @@ impl Perception {
         self.fallen = fallen;
     }
 
-    /// Processes an image, given the odometry at the time it was taken.
+    /// Processes an image, given the odometry at the time it was taken. The filters may have been
+    /// propagated past that time: then what it shows is transformed into their frame.
     pub fn see(&mut self, image: &Sightings, game: &GameState, odometry: &Isometry2<f64>) {
+        let taken_at = Timestamp::from_nanos(image.taken_at);
         self.taken_at = image.taken_at;
-        self.advance(Timestamp::from_nanos(image.taken_at), odometry);
+        self.advance(taken_at, odometry);
+        let then_from_now = (self.moment > taken_at).then(|| odometry.inverse() * self.odometry);
+        let moved = |sighting: &Sighting| match &then_from_now {
+            Some(then_from_now) => convert::moved(sighting, then_from_now),
+            None => *sighting,
+        };
+        let objects = image.objects.iter().map(moved);
+        let of_kind = |kind| objects.clone().filter(move |sighting| sighting.kind() == kind);
         self.landmarks.clear();
-        for sighting in &image.objects {
-            self.landmarks.extend(convert::landmark(sighting, game));
-            match sighting.kind() {
-                ObjectKind::Ball => self.see_ball(sighting),
-                ObjectKind::Robot => self.obstacles.see(Obstacle {
-                    position: convert::position(sighting),
-                    team_mate: sighting.colour == game.team_colour,
-                    seen_at: self.moment,
-                }),
-                _ => {}
-            }
-        }
+        self.landmarks.extend(objects.clone().filter_map(|sighting| convert::landmark(&sighting, game)));
         if let Some(filter) = &mut self.localisation {
             filter.correct(&game.field(), &self.landmarks);
         }
-    }
-
-    fn see_ball(&mut self, sighting: &Sighting) {
-        self.ball.correct(sighting.distance, sighting.bearing);
-        self.ball_at = self.moment;
+        let age = self.moment.since(taken_at);
+        if self.ball.correct(of_kind(ObjectKind::Ball).map(convert::ball_sighting), age) {
+            self.ball_at = taken_at;
+        }
+        self.obstacles.see(of_kind(ObjectKind::Robot).map(|sighting| Obstacle {
+            position: convert::position(&sighting),
+            team_mate: sighting.colour == game.team_colour,
+            seen_at: taken_at,
+        }));
     }
 
     /// Propagates all filters to a time; earlier times are ignored.

@@ -3,13 +3,15 @@
 //! `season row VARIANT SEED SECONDS` plays one match and prints its row, `season rows VARIANT 1-20
 //! SECONDS` several and their sums, `season count` with the arguments of `row` prints passes,
 //! kick-offs, crowding and the time in each state. `season poses VARIANT 1-20 SECONDS` prints how
-//! far the robots' poses are from the truth, and how long robots need that are carried away.
+//! far the robots' poses are from the truth, and how long robots need that are carried away. They know
+//! the variants of the season and those with cameras as unkind as real ones.
 
 use std::process::ExitCode;
 use std::time::Duration;
 
 use monas_tests::{
-    MatchRow, SeasonTable, VARIANTS, Variant, kidnap, play, pose_errors, quantile, root, season, short_rows,
+    MatchRow, OTHER_VARIANTS, SeasonTable, VARIANTS, Variant, kidnap, play, pose_errors, quantile, root,
+    season, short_rows,
 };
 
 fn main() -> ExitCode {
@@ -82,7 +84,7 @@ fn count(variant: &str, seed: &str, seconds: &str) -> Result<(), String> {
 }
 
 fn game(variant: &str, seed: &str, seconds: &str) -> Result<(&'static Variant, u64, Duration), String> {
-    let known = VARIANTS.iter().find(|known| known.name == variant);
+    let known = VARIANTS.iter().chain(&OTHER_VARIANTS).find(|known| known.name == variant);
     let variant = known.ok_or_else(|| format!("no variant `{variant}`"))?;
     let seed = seed.parse().map_err(|_| format!("`{seed}` is no seed"))?;
     let seconds = seconds.parse().map_err(|_| format!("`{seconds}` is no number of seconds"))?;

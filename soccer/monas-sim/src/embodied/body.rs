@@ -9,10 +9,11 @@ use monas_robot::{
 use narukom::Timestamp;
 
 use super::image_camera::ImageCamera;
+use super::picture_queue::PictureQueue;
 use super::skill::SkillTrack;
 use super::{SharedField, announce};
 use crate::{
-    BodyPhase, Command, LineFeature, Motion, Physics, STEP, Senses, Side, Sighting, SimulatedWorld, Velocity,
+    BodyPhase, Command, LineFeature, Motion, Physics, STEP, Senses, Side, Sighting, Velocity,
 };
 
 /// Interval at which an unchanged announcement is repeated, as by a game controller.
@@ -31,12 +32,24 @@ pub struct FieldBody {
     rests: bool,
     /// The cameras, if they deliver images in place of sightings.
     cameras: Option<ImageCamera>,
+    /// The time from the exposure of a picture to its delivery.
+    latency: Duration,
+    pictures: PictureQueue<Picture>,
+}
+
+/// What the cameras deliver of one exposure.
+enum Picture {
+    Sightings(monas_robot::Sightings),
+    Images(monas_robot::Images),
 }
 
 impl FieldBody {
     pub(super) fn new(pitch: SharedField, robot: usize) -> FieldBody {
         let longest_message = pitch.lock().air.longest();
-        let anatomy = pitch.with_world(|world| anatomy(world.physics(), longest_message));
+        let (anatomy, latency) = pitch.with_world(|world| {
+            let physics = world.physics();
+            (anatomy(physics, longest_message), Duration::from_secs_f64(physics.camera_latency))
+        });
         let (senses, skill, command) = Default::default();
         FieldBody {
             pitch,
@@ -48,6 +61,8 @@ impl FieldBody {
             announced: None,
             rests: false,
             cameras: None,
+            latency,
+            pictures: PictureQueue::new(),
         }
     }
 
@@ -88,14 +103,18 @@ impl FieldBody {
         };
     }
 
-    fn see(&self, now: Timestamp) -> Option<monas_robot::Sightings> {
-        let objects = self.pitch.with_world(SimulatedWorld::objects);
-        self.senses.new_picture.then(|| monas_robot::Sightings {
-            taken_at: now.as_nanos(),
-            head_yaw: self.senses.head_yaw,
-            head_pitch: self.senses.head_pitch,
-            objects: self.senses.sightings.iter().map(|seen| sighting(seen, objects)).collect(),
-        })
+    /// Takes a picture, if one was exposed in this cycle.
+    fn expose(&mut self, now: Timestamp) -> Result<(), Error> {
+        if !self.senses.new_picture {
+            return Ok(());
+        }
+        let (senses, robot) = (&self.senses, self.robot);
+        let picture = self.pitch.with_world(|world| match &mut self.cameras {
+            None => Ok(Picture::Sightings(sightings(senses, world.objects(), now))),
+            Some(cameras) => cameras.take(world, robot, now).map(Picture::Images),
+        })?;
+        self.pictures.expose(now, picture);
+        Ok(())
     }
 
     /// Sends the current command for legs and head to the world.
@@ -140,13 +159,12 @@ impl Robot for FieldBody {
             self.drive()?;
         }
         self.feel(now, &mut percepts.sensors);
-        match &mut self.cameras {
-            None => percepts.sightings = self.see(now),
-            Some(cameras) if self.senses.new_picture => {
-                let images = self.pitch.with_world(|world| cameras.take(world, self.robot, now));
-                percepts.images = Some(images?);
-            }
-            Some(_) => {}
+        self.expose(now)?;
+        percepts.sightings = None;
+        match self.pictures.deliver(now, self.latency) {
+            Some(Picture::Sightings(sightings)) => percepts.sightings = Some(sightings),
+            Some(Picture::Images(images)) => percepts.images = Some(images),
+            None => {}
         }
         percepts.announcement = self.announcement(now);
         Ok(())
@@ -240,6 +258,15 @@ fn posture(phase: BodyPhase, is_lifted: bool) -> Posture {
     }
 }
 
+fn sightings(senses: &Senses, objects: ObjectSet, now: Timestamp) -> monas_robot::Sightings {
+    monas_robot::Sightings {
+        taken_at: now.as_nanos(),
+        head_yaw: senses.head_yaw,
+        head_pitch: senses.head_pitch,
+        objects: senses.sightings.iter().map(|seen| sighting(seen, objects)).collect(),
+    }
+}
+
 fn sighting(seen: &Sighting, objects: ObjectSet) -> monas_robot::Sighting {
     let of_2010 = |colour| if objects == ObjectSet::Of2010 { colour } else { monas_robot::Colour::White };
     let (kind, colour, percept) = match seen {
@@ -278,7 +305,7 @@ mod tests {
     use monas_robot::SkillResult;
 
     use super::*;
-    use crate::{FieldSide, RobotSetup, Setup, TeamColour, TeamSetup};
+    use crate::{FieldSide, RobotSetup, Setup, SimulatedWorld, TeamColour, TeamSetup};
 
     fn pitch() -> SharedField {
         let team =

@@ -20,7 +20,8 @@ use crate::{FieldLines, GameState, convert, topics};
 /// field, in the robot's frame at their time.
 ///
 /// Sightings are related to the odometry at the time of the image, which Sensors keeps, and
-/// propagated to the time of publication. A placement by the referee resets the pose and discards
+/// propagated to the time of publication. A ball or a robot counts once two of a few images show
+/// it, since images show things that are not there. A placement by the referee resets the pose and discards
 /// earlier sightings.
 ///
 /// Parameters `memory` (s): how long a ball counts as found after it was last seen;
@@ -148,11 +149,13 @@ mod tests {
     use monas_robot::{Colour, Image, Images, ObjectKind, Sensors as Felt, Sighting, Sightings};
     use monas_vision::render::{Light, Renderer, Scene};
     use monas_vision::{Camera, FieldObjects, HeadPose};
+    use nalgebra::Point2;
 
     use super::*;
     use crate::Ball;
     use crate::activities::activity_fixture::ActivityFixture;
     use crate::activities::{SendCalibration, Sensors};
+    use crate::functionality::geometry::pose;
 
     /// A standing body whose camera sees the objects given by the test.
     struct VisionFixture {
@@ -219,6 +222,7 @@ mod tests {
         let mut eye = VisionFixture::new();
         eye.stage.publish(topics::GAME_STATE, VisionFixture::placed(1, 0.0, 0.0, 0.0));
         assert!(!eye.show(0.0, &[]).found);
+        assert!(!eye.ball(1.0, 0.5).found, "one sighting may be false");
         let ball = eye.ball(1.0, 0.5);
         assert!(
             ball.found && (ball.distance - 1.0).abs() < 0.01 && (ball.bearing - 0.5).abs() < 0.01,
@@ -261,6 +265,99 @@ mod tests {
             let y = 1.0 - 0.15 * f64::from(frame);
             assert!(!eye.ball(libm::hypot(1.5, y), libm::atan2(y, 1.5)).approaching);
         }
+    }
+
+    /// The greatest error of the published position of a ball that starts 2 m ahead and rolls to
+    /// the left, m. The robot turns, and each picture is delivered `latency` after its exposure.
+    fn greatest_error(speed: f64, turn: f64, latency: Duration) -> f64 {
+        const CYCLE: Duration = Duration::from_millis(20);
+        let start = Timestamp::from_nanos(2_000_000_000);
+        let seen_at = |time: Timestamp| {
+            let elapsed = time.since(start).as_secs_f64();
+            let (y, heading) = (speed * elapsed, turn * elapsed);
+            pose(0.0, 0.0, heading).inverse_transform_point(&Point2::new(2.0, y))
+        };
+        let mut eye = VisionFixture::new();
+        eye.stage.publish(topics::GAME_STATE, VisionFixture::placed(1, 0.0, 0.0, 0.0));
+        let mut greatest: f64 = 0.0;
+        for cycle in 1..=60 {
+            eye.stage.wait(CYCLE);
+            let now = eye.stage.now;
+            let odometry_turn = turn * CYCLE.as_secs_f64();
+            let felt = Felt { measured_at: now.as_nanos(), odometry_turn, ..Felt::default() };
+            eye.stage.publish(body::SENSORS, felt);
+            let taken_at = now.as_nanos() - latency.as_nanos() as u64;
+            if cycle % 2 == 0 && taken_at > start.as_nanos() {
+                let ball = seen_at(Timestamp::from_nanos(taken_at)).coords;
+                let (distance, bearing) = (ball.norm(), libm::atan2(ball.y, ball.x));
+                let kind = ObjectKind::Ball.into();
+                let objects = vec![Sighting { kind, distance, bearing, ..Sighting::default() }];
+                eye.stage.publish(body::SIGHTINGS, Sightings { taken_at, objects, ..Sightings::default() });
+            }
+            eye.stage.run(&mut Sensors);
+            eye.stage.run(&mut eye.vision);
+            let ball = eye.stage.latest(topics::BALL).unwrap();
+            // The filter knows the velocity after half a second.
+            if cycle > 25 {
+                assert!(ball.found, "cycle {cycle}");
+                greatest = greatest.max((ball.position() - seen_at(now)).norm());
+            }
+        }
+        greatest
+    }
+
+    #[test]
+    fn a_latency_does_not_displace_the_ball() {
+        let (none, latency) = (Duration::ZERO, Duration::from_millis(60));
+        for (speed, turn) in [(0.0, 0.0), (0.0, 1.2), (1.0, 0.0), (1.0, -1.2), (0.5, 1.2)] {
+            let (prompt, late) = (greatest_error(speed, turn, none), greatest_error(speed, turn, latency));
+            // Without propagation to the present, the ball lags by latency * speed, and a turn at 2 m
+            // displaces it by 0.14 m.
+            let explained = latency.as_secs_f64() * speed / 2.0 + 0.005;
+            assert!(late <= prompt + explained, "{speed} m/s, {turn} rad/s: {prompt} m, late {late} m");
+            assert!(prompt < 0.05, "{speed} m/s, {turn} rad/s: {prompt} m");
+        }
+    }
+
+    #[test]
+    fn a_late_picture_of_posts_and_robots_is_turned_into_the_present() {
+        let mut eye = VisionFixture::new();
+        eye.stage.publish(topics::GAME_STATE, VisionFixture::placed(1, 0.0, 0.0, 0.0));
+        eye.show(0.0, &[]);
+        let kind = |kind: ObjectKind, colour: Colour, x: f64, y: f64| Sighting {
+            kind: kind.into(),
+            colour: colour.into(),
+            distance: libm::hypot(x, y),
+            bearing: libm::atan2(y, x),
+        };
+        // Each cycle turns the robot by 0.1 rad; pictures are one cycle old.
+        let turn = 0.1;
+        for cycle in 1..=6 {
+            let exposed_at = eye.stage.now.as_nanos();
+            eye.stage.wait(FRAME);
+            let measured_at = eye.stage.now.as_nanos();
+            eye.stage.publish(body::SENSORS, Felt { measured_at, odometry_turn: turn, ..Felt::default() });
+            let heading = turn * f64::from(cycle - 1);
+            let seen = |x: f64, y: f64| {
+                let from = pose(0.0, 0.0, heading);
+                from.inverse_transform_point(&Point2::new(x, y))
+            };
+            let (post, robot) = (seen(3.0, 0.7), seen(1.0, 0.5));
+            let objects = vec![
+                kind(ObjectKind::LeftPost, Colour::Yellow, post.x, post.y),
+                kind(ObjectKind::Robot, Colour::Blue, robot.x, robot.y),
+            ];
+            let image = Sightings { taken_at: exposed_at, objects, ..Sightings::default() };
+            eye.stage.publish(body::SIGHTINGS, image);
+            eye.stage.run(&mut Sensors);
+            eye.stage.run(&mut eye.vision);
+        }
+        let own = eye.stage.latest(topics::POSE).unwrap();
+        assert!((own.heading - 0.6).abs() < 0.01 && own.x.abs() < 0.02 && own.y.abs() < 0.02, "{own:?}");
+        let robots = eye.stage.latest(topics::ROBOTS).unwrap().robots;
+        let expected = pose(0.0, 0.0, 0.6).inverse_transform_point(&Point2::new(1.0, 0.5));
+        assert_eq!(robots.len(), 1);
+        assert!((robots[0].position() - expected).norm() < 0.01, "{robots:?}");
     }
 
     #[test]
@@ -332,6 +429,7 @@ mod tests {
         let mut eye = VisionFixture::new();
         eye.stage.publish(topics::GAME_STATE, VisionFixture::placed(1, 0.0, 0.0, 0.0));
         eye.show(0.0, &[]);
+        eye.ball(1.0, 0.0);
         assert!(eye.ball(1.0, 0.0).found);
         eye.stage.publish(topics::GAME_STATE, VisionFixture::placed(2, 1.0, 1.0, 3.0));
         assert!(!eye.show(0.0, &[]).found);
@@ -344,6 +442,7 @@ mod tests {
         let mut eye = VisionFixture::new();
         eye.stage.publish(topics::GAME_STATE, VisionFixture::placed(1, 0.0, 0.0, 0.0));
         eye.show(0.0, &[]);
+        eye.ball(1.0, 0.0);
         assert!(eye.ball(1.0, 0.0).found);
         eye.stage.run(&mut SendCalibration);
         assert!(!eye.show(0.0, &[]).found);
@@ -354,10 +453,12 @@ mod tests {
         let mut eye = VisionFixture::new();
         eye.stage.publish(topics::GAME_STATE, VisionFixture::placed(1, 0.0, 0.0, 0.0));
         eye.show(0.0, &[]);
-        eye.show(
-            0.0,
-            &[(ObjectKind::Robot, Colour::Red, 1.0, 0.0), (ObjectKind::Robot, Colour::Blue, 2.0, 0.5)],
-        );
+        for _ in 0..2 {
+            eye.show(
+                0.0,
+                &[(ObjectKind::Robot, Colour::Red, 1.0, 0.0), (ObjectKind::Robot, Colour::Blue, 2.0, 0.5)],
+            );
+        }
         let robots = eye.stage.latest(topics::ROBOTS).unwrap();
         assert_eq!(robots.nearest, 1.0);
         let robots = robots.robots;

@@ -3,8 +3,11 @@
 //! A Kalman filter with a model of constant velocity and white acceleration (Bar-Shalom, Li,
 //! Kirubarajan, *Estimation with Applications to Tracking and Navigation*, 2001, section 6.2), plus
 //! the constant deceleration of a rolling ball. The state is kept in the robot's frame, so that
-//! errors of localisation do not affect it; odometry transforms it. One outlier is ignored (an
-//! orange shoe); the second in a row resets the filter (the ball was kicked or moved).
+//! errors of localisation do not affect it; odometry transforms it.
+//!
+//! A sighting that does not fit the ball is a candidate. It is believed when a second one fits it
+//! within a few pictures, in place of a ball that was not seen meanwhile (the ball was kicked or
+//! moved). A single false sighting (an orange shoe) so changes nothing.
 
 use std::time::Duration;
 
@@ -63,15 +66,41 @@ pub struct BallEstimate {
     pub velocity_deviation: f64,
 }
 
+/// A sighting of the ball: distance in metres, bearing in radians.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct BallSighting {
+    /// Distance along the ground, metres.
+    pub distance: f64,
+    /// Bearing from the robot, radians.
+    pub bearing: f64,
+}
+
 /// The filter. [Predicted](BallFilter::predict) with every motion of the robot,
-/// [corrected](BallFilter::correct) with every sighting.
+/// [corrected](BallFilter::correct) with every picture.
 #[derive(Clone, Debug)]
 pub struct BallFilter {
     model: BallModel,
-    /// Position and velocity with their covariance; none before the first sighting.
-    belief: Option<(Vector4<f64>, Matrix4<f64>)>,
-    /// Number of consecutive outliers.
-    misfits: u32,
+    /// The ball; none before it was seen twice.
+    ball: Option<Track>,
+    /// What may be the ball.
+    candidate: Option<Track>,
+}
+
+/// Position and velocity of something that was seen, with their covariance.
+#[derive(Clone, Copy, Debug)]
+struct Track {
+    state: Vector4<f64>,
+    covariance: Matrix4<f64>,
+    /// Number of pictures since it was last seen.
+    unseen: u32,
+}
+
+/// A match of a sighting with a track.
+struct TrackMatch {
+    innovation: Vector2<f64>,
+    gain: Matrix4x2<f64>,
+    observation: Matrix2x4<f64>,
+    mismatch: f64,
 }
 
 /// The square of the Mahalanobis distance beyond which a sighting is an outlier: 99.9 % of correct
@@ -79,89 +108,87 @@ pub struct BallFilter {
 const GATE: f64 = 13.8;
 /// Least standard deviation of a position, metres.
 const LEAST_NOISE: f64 = 0.01;
+/// Number of pictures in which a candidate must be seen again.
+const CONFIRMATION: u32 = 4;
+/// Number of pictures without the ball after which it must be seen twice again: its position is so
+/// uncertain that false sightings fit.
+const UNCERTAIN: u32 = 30;
 
 impl BallFilter {
     /// A filter without an estimate.
     pub fn new(model: BallModel) -> BallFilter {
-        BallFilter { model, belief: None, misfits: 0 }
+        BallFilter { model, ball: None, candidate: None }
     }
 
     /// Forgets the ball.
     pub fn forget(&mut self) {
-        self.belief = None;
-        self.misfits = 0;
+        (self.ball, self.candidate) = (None, None);
     }
 
     /// Predicts the state after `elapsed`, during which the robot moved to `old_from_new`, its new
     /// pose in its old frame.
     pub fn predict(&mut self, elapsed: Duration, old_from_new: &Isometry2<f64>) {
-        let Some((state, covariance)) = self.belief else { return };
         let dt = elapsed.as_secs_f64();
-        let transition = transition(dt);
-        let rolled = self.braked(&(transition * state), dt);
-        let covariance = transition * covariance * transition.transpose() + self.process_noise(dt);
-        let turned = turn(old_from_new);
-        let position = old_from_new.inverse_transform_point(&Point2::new(rolled[0], rolled[1]));
-        let velocity = old_from_new.inverse_transform_vector(&Vector2::new(rolled[2], rolled[3]));
-        let state = Vector4::new(position.x, position.y, velocity.x, velocity.y);
-        self.belief = Some((state, turned * covariance * turned.transpose()));
-    }
-
-    /// Corrects the state with a sighting: distance in metres, bearing in radians.
-    pub fn correct(&mut self, distance: f64, bearing: f64) {
-        let seen = polar(distance, bearing);
-        let noise = self.measurement_noise(distance, bearing);
-        let Some((state, covariance)) = self.belief else { return self.restart(seen, noise) };
-        let innovation = seen - state.fixed_rows::<2>(0);
-        let spread = covariance.fixed_view::<2, 2>(0, 0) + noise;
-        let Some(inverse) = spread.try_inverse() else { return self.restart(seen, noise) };
-        if (innovation.transpose() * inverse * innovation).x > GATE {
-            return self.misfit(seen, noise);
+        let noise = self.process_noise(dt);
+        for track in [&mut self.ball, &mut self.candidate].into_iter().flatten() {
+            track.predict(dt, &noise, self.model.rolling_deceleration, old_from_new);
         }
-        self.misfits = 0;
-        let gain: Matrix4x2<f64> = covariance.fixed_columns::<2>(0) * inverse;
-        let kept = Matrix4::identity() - gain * observation();
-        self.belief = Some((state + gain * innovation, kept * covariance));
     }
 
-    /// The current estimate; none before the first sighting.
+    /// Corrects the state with the balls in a picture, which was taken `age` before the time of the
+    /// state. Their positions are relative to the robot at the time of the state. Returns whether
+    /// the ball was seen.
+    pub fn correct(&mut self, seen: impl Iterator<Item = BallSighting> + Clone, age: Duration) -> bool {
+        for track in [&mut self.ball, &mut self.candidate].into_iter().flatten() {
+            track.unseen += 1;
+        }
+        self.candidate = self.candidate.filter(|candidate| candidate.unseen <= CONFIRMATION);
+        let fit = |track: &Track| {
+            let fits = seen.clone().filter_map(|sighting| self.fit(track, sighting, age));
+            let best = fits.min_by(|one, other| one.mismatch.total_cmp(&other.mismatch));
+            best.filter(|best| best.mismatch <= GATE)
+        };
+        let certain = self.ball.filter(|ball| ball.unseen <= UNCERTAIN);
+        let seen_again = |track: Option<Track>| track.and_then(|track| Some(track.corrected(&fit(&track)?)));
+        if let Some(ball) = seen_again(certain).or_else(|| seen_again(self.candidate)) {
+            (self.ball, self.candidate) = (Some(ball), None);
+            return true;
+        }
+        if let Some(sighting) = seen.clone().next() {
+            self.candidate = Some(self.start(sighting));
+        }
+        false
+    }
+
+    /// The current estimate; none before the ball was seen twice.
     pub fn estimate(&self) -> Option<BallEstimate> {
-        self.belief.map(|(state, covariance)| BallEstimate {
+        self.ball.map(|Track { state, covariance, .. }| BallEstimate {
             position: Point2::new(state[0], state[1]),
             velocity: Vector2::new(state[2], state[3]),
             velocity_deviation: covariance[(2, 2)].max(covariance[(3, 3)]).max(0.0).sqrt(),
         })
     }
 
-    fn misfit(&mut self, seen: Vector2<f64>, noise: Matrix2<f64>) {
-        self.misfits += 1;
-        if self.misfits >= 2 {
-            self.restart(seen, noise);
-        }
+    fn fit(&self, track: &Track, sighting: BallSighting, age: Duration) -> Option<TrackMatch> {
+        let seen = polar(sighting.distance, sighting.bearing);
+        let observation = observation(age);
+        let innovation = seen - observation * track.state;
+        let noise = self.measurement_noise(sighting);
+        let spread = observation * track.covariance * observation.transpose() + noise;
+        let inverse = spread.try_inverse()?;
+        let mismatch = (innovation.transpose() * inverse * innovation).x;
+        let gain = track.covariance * observation.transpose() * inverse;
+        Some(TrackMatch { innovation, gain, observation, mismatch })
     }
 
-    fn restart(&mut self, seen: Vector2<f64>, noise: Matrix2<f64>) {
+    /// The track of something that is seen for the first time.
+    fn start(&self, sighting: BallSighting) -> Track {
+        let seen = polar(sighting.distance, sighting.bearing);
         let mut covariance = Matrix4::zeros();
-        covariance.fixed_view_mut::<2, 2>(0, 0).copy_from(&noise);
+        covariance.fixed_view_mut::<2, 2>(0, 0).copy_from(&self.measurement_noise(sighting));
         let speed = self.model.first_speed * self.model.first_speed;
         covariance.fixed_view_mut::<2, 2>(2, 2).copy_from(&(Matrix2::identity() * speed));
-        self.belief = Some((Vector4::new(seen.x, seen.y, 0.0, 0.0), covariance));
-        self.misfits = 0;
-    }
-
-    /// The state after friction over `dt`: it stops the ball but does not reverse it.
-    fn braked(&self, state: &Vector4<f64>, dt: f64) -> Vector4<f64> {
-        let speed = libm::hypot(state[2], state[3]);
-        let left = (speed - self.model.rolling_deceleration * dt).max(0.0);
-        let part = if speed > 0.0 { left / speed } else { 0.0 };
-        let mut braked = *state;
-        // Corrects the displacement to the mean velocity: the step was computed with the initial
-        // velocity.
-        braked[0] -= state[2] * (1.0 - part) / 2.0 * dt;
-        braked[1] -= state[3] * (1.0 - part) / 2.0 * dt;
-        braked[2] *= part;
-        braked[3] *= part;
-        braked
+        Track { state: Vector4::new(seen.x, seen.y, 0.0, 0.0), covariance, unseen: 0 }
     }
 
     /// White acceleration, constant during the step.
@@ -179,7 +206,7 @@ impl BallFilter {
     }
 
     /// Noise along and across the line of sight, turned into the robot's frame.
-    fn measurement_noise(&self, distance: f64, bearing: f64) -> Matrix2<f64> {
+    fn measurement_noise(&self, BallSighting { distance, bearing }: BallSighting) -> Matrix2<f64> {
         // A ball on the ground at distance d is seen at the elevation atan(h/d): δd = δe (d² + h²)
         // / h.
         let height = self.model.eye_height;
@@ -191,6 +218,40 @@ impl BallFilter {
     }
 }
 
+impl Track {
+    fn predict(&mut self, dt: f64, noise: &Matrix4<f64>, deceleration: f64, old_from_new: &Isometry2<f64>) {
+        let transition = transition(dt);
+        let rolled = braked(&(transition * self.state), dt, deceleration);
+        let covariance = transition * self.covariance * transition.transpose() + noise;
+        let turned = turn(old_from_new);
+        let position = old_from_new.inverse_transform_point(&Point2::new(rolled[0], rolled[1]));
+        let velocity = old_from_new.inverse_transform_vector(&Vector2::new(rolled[2], rolled[3]));
+        self.state = Vector4::new(position.x, position.y, velocity.x, velocity.y);
+        self.covariance = turned * covariance * turned.transpose();
+    }
+
+    fn corrected(&self, fit: &TrackMatch) -> Track {
+        let kept = Matrix4::identity() - fit.gain * fit.observation;
+        let state = self.state + fit.gain * fit.innovation;
+        Track { state, covariance: kept * self.covariance, unseen: 0 }
+    }
+}
+
+/// The state after friction over `dt`: it stops the ball but does not reverse it.
+fn braked(state: &Vector4<f64>, dt: f64, deceleration: f64) -> Vector4<f64> {
+    let speed = libm::hypot(state[2], state[3]);
+    let left = (speed - deceleration * dt).max(0.0);
+    let part = if speed > 0.0 { left / speed } else { 0.0 };
+    let mut braked = *state;
+    // Corrects the displacement to the mean velocity: the step was computed with the initial
+    // velocity.
+    braked[0] -= state[2] * (1.0 - part) / 2.0 * dt;
+    braked[1] -= state[3] * (1.0 - part) / 2.0 * dt;
+    braked[2] *= part;
+    braked[3] *= part;
+    braked
+}
+
 fn transition(dt: f64) -> Matrix4<f64> {
     let mut transition = Matrix4::identity();
     transition[(0, 2)] = dt;
@@ -198,8 +259,12 @@ fn transition(dt: f64) -> Matrix4<f64> {
     transition
 }
 
-fn observation() -> Matrix2x4<f64> {
-    Matrix2x4::identity()
+/// Where the ball was `age` before the time of the state.
+fn observation(age: Duration) -> Matrix2x4<f64> {
+    let mut observation = Matrix2x4::identity();
+    let age = age.as_secs_f64();
+    (observation[(0, 2)], observation[(1, 3)]) = (-age, -age);
+    observation
 }
 
 /// Turns position and velocity into the frame of a robot that has turned.
@@ -220,18 +285,48 @@ mod tests {
 
     const FRAME: Duration = Duration::from_millis(100);
 
+    fn sighting(ball: Point2<f64>) -> BallSighting {
+        BallSighting { distance: libm::hypot(ball.x, ball.y), bearing: libm::atan2(ball.y, ball.x) }
+    }
+
+    /// Shows a picture with these balls.
+    fn show(filter: &mut BallFilter, balls: &[Point2<f64>]) -> bool {
+        filter.correct(balls.iter().copied().map(sighting), Duration::ZERO)
+    }
+
     fn see(filter: &mut BallFilter, ball: Point2<f64>) {
-        filter.correct(libm::hypot(ball.x, ball.y), libm::atan2(ball.y, ball.x));
+        show(filter, &[ball]);
+    }
+
+    /// Asserts that the ball is at a place.
+    fn assert_at(filter: &BallFilter, place: Point2<f64>) {
+        let ball = filter.estimate().unwrap();
+        assert!((ball.position - place).norm() < 0.02, "{ball:?}");
+    }
+
+    /// A filter that has seen a ball at a place in ten pictures.
+    fn believer(ball: Point2<f64>) -> BallFilter {
+        let mut filter = BallFilter::new(BallModel::default());
+        (0..10).for_each(|_| see(&mut filter, ball));
+        filter
     }
 
     #[test]
-    fn nothing_is_known_before_it_is_seen() {
+    fn nothing_is_known_before_it_is_seen_twice() {
+        let (ball, nothing) = (Point2::new(1.0, 0.0), &[][..]);
         let mut filter = BallFilter::new(BallModel::default());
         filter.predict(FRAME, &Isometry2::identity());
+        assert!(!show(&mut filter, &[ball]));
         assert_eq!(filter.estimate(), None);
-        filter.correct(1.0, 0.0);
-        assert!(filter.estimate().is_some());
+        (1..CONFIRMATION).for_each(|_| assert!(!show(&mut filter, nothing)));
+        assert!(show(&mut filter, &[ball]), "seen again within a few pictures");
+        assert_at(&filter, ball);
         filter.forget();
+        assert_eq!(filter.estimate(), None);
+        assert!(!show(&mut filter, &[ball]));
+        (0..CONFIRMATION).for_each(|_| assert!(!show(&mut filter, nothing)));
+        assert!(!show(&mut filter, &[ball]), "too late");
+        assert!(!show(&mut filter, &[Point2::new(2.0, 1.0)]), "elsewhere");
         assert_eq!(filter.estimate(), None);
     }
 
@@ -281,16 +376,63 @@ mod tests {
     }
 
     #[test]
-    fn one_outlier_is_ignored_and_two_restart() {
-        let mut filter = BallFilter::new(BallModel::default());
-        for _ in 0..10 {
-            filter.correct(1.0, 0.0);
+    fn outliers_are_ignored_unless_they_agree() {
+        let (ball, moved) = (Point2::new(1.0, 0.0), Point2::from(polar(3.0, 1.0)));
+        let mut filter = believer(ball);
+        for outlier in [moved, Point2::new(0.5, -2.0), Point2::new(3.0, -1.0)] {
+            assert!(!show(&mut filter, &[outlier]));
+            assert_at(&filter, ball);
+        }
+        see(&mut filter, moved);
+        assert!(show(&mut filter, &[moved]), "a contradicted ball is replaced");
+        assert_at(&filter, moved);
+    }
+
+    #[test]
+    fn a_ball_that_is_seen_is_not_replaced() {
+        let (ball, shoe) = (Point2::new(1.0, 0.0), Point2::new(1.5, 1.0));
+        let mut filter = believer(ball);
+        for _ in 0..20 {
+            assert!(show(&mut filter, &[shoe, ball]));
+            assert_at(&filter, ball);
+        }
+        // The shoe alone, between pictures of the ball.
+        for _ in 0..20 {
+            assert!(!show(&mut filter, &[shoe]));
+            assert!(show(&mut filter, &[ball]));
+            assert_at(&filter, ball);
+        }
+    }
+
+    #[test]
+    fn a_ball_out_of_sight_is_believed_again_when_it_is_seen_twice() {
+        let ball = Point2::new(1.0, 0.0);
+        let mut filter = believer(ball);
+        for _ in 0..=UNCERTAIN {
+            show(&mut filter, &[]);
             filter.predict(FRAME, &Isometry2::identity());
         }
-        filter.correct(3.0, 1.0);
-        assert!((filter.estimate().unwrap().position - Point2::new(1.0, 0.0)).norm() < 0.01);
-        filter.correct(3.0, 1.0);
-        assert!((filter.estimate().unwrap().position - Point2::from(polar(3.0, 1.0))).norm() < 0.01);
+        // It fits the uncertain ball, but may be false.
+        let near = Point2::new(1.3, 0.2);
+        assert!(!show(&mut filter, &[near]));
+        assert_at(&filter, ball);
+        assert!(show(&mut filter, &[near]));
+        assert_at(&filter, near);
+    }
+
+    #[test]
+    fn a_late_picture_shows_where_a_rolling_ball_was() {
+        let model = BallModel { rolling_deceleration: 0.0, ..BallModel::default() };
+        let mut filter = BallFilter::new(model);
+        let (at, age) = (|time: f64| Point2::new(2.0 - time, 0.3), Duration::from_millis(60));
+        for step in 1..=15 {
+            filter.predict(FRAME, &Isometry2::identity());
+            let exposed_at = 0.1 * f64::from(step) - age.as_secs_f64();
+            filter.correct([sighting(at(exposed_at))].into_iter(), age);
+        }
+        let ball = filter.estimate().unwrap();
+        assert!((ball.position - at(1.5)).norm() < 0.02, "{ball:?}");
+        assert!((ball.velocity - Vector2::new(-1.0, 0.0)).norm() < 0.05, "{ball:?}");
     }
 
     proptest! {
@@ -300,7 +442,10 @@ mod tests {
         ) {
             let mut filter = BallFilter::new(BallModel::default());
             for (distance, bearing, millis, step) in sightings {
-                filter.correct(distance, bearing);
+                let sighting = BallSighting { distance, bearing };
+                for _ in 0..2 {
+                    filter.correct([sighting].into_iter(), Duration::from_millis(millis / 10));
+                }
                 filter.predict(Duration::from_millis(millis), &pose(step, -step, step));
                 let ball = filter.estimate().unwrap();
                 prop_assert!(ball.position.x.is_finite() && ball.velocity.norm().is_finite());

@@ -16,16 +16,28 @@ pub struct Obstacle {
     pub seen_at: Timestamp,
 }
 
-/// A short-term memory of other robots, transformed by odometry.
+/// A short-term memory of other robots, transformed by odometry. A robot counts once it was seen
+/// twice within a few pictures in the same colour, so that single false sightings and confused
+/// colours change nothing.
 #[derive(Clone, Debug, Default)]
 pub struct Obstacles {
-    seen: Vec<Obstacle>,
+    seen: Vec<Track>,
+}
+
+#[derive(Clone, Debug)]
+struct Track {
+    obstacle: Obstacle,
+    is_confirmed: bool,
+    /// Number of pictures since it was last seen.
+    unseen: u32,
 }
 
 /// Distance within which two sightings of one colour are the same robot, metres.
 const SAME: f64 = 0.4;
 /// How long a robot that is not seen again is remembered.
 const MEMORY: Duration = Duration::from_millis(1500);
+/// Number of pictures in which a robot must be seen again.
+const CONFIRMATION: u32 = 4;
 /// Greatest number of robots on a field.
 const MOST: usize = 16;
 
@@ -33,24 +45,33 @@ impl Obstacles {
     /// Moves the robot to `old_from_new`, its new pose in its old frame, and forgets what is too
     /// old.
     pub fn advance(&mut self, now: Timestamp, old_from_new: &Isometry2<f64>) {
-        self.seen.retain(|obstacle| now.since(obstacle.seen_at) <= MEMORY);
-        for obstacle in &mut self.seen {
+        self.seen.retain(|track| now.since(track.obstacle.seen_at) <= MEMORY);
+        for Track { obstacle, .. } in &mut self.seen {
             obstacle.position = old_from_new.inverse_transform_point(&obstacle.position);
         }
     }
 
-    /// Adds a sighting; it replaces the nearest robot of its colour if that is near enough to be
-    /// the same.
-    pub fn see(&mut self, sighting: Obstacle) {
-        let distance = |obstacle: &Obstacle| (obstacle.position - sighting.position).norm();
+    /// Adds the robots in a picture. Each replaces the nearest known robot of its colour if that is
+    /// near enough to be the same.
+    pub fn see(&mut self, picture: impl Iterator<Item = Obstacle>) {
+        self.seen.iter_mut().for_each(|track| track.unseen += 1);
+        self.seen.retain(|track| track.is_confirmed || track.unseen <= CONFIRMATION);
+        picture.for_each(|sighting| self.add(sighting));
+    }
+
+    fn add(&mut self, sighting: Obstacle) {
+        let distance = |track: &Track| (track.obstacle.position - sighting.position).norm();
         let full = self.seen.len() >= MOST;
-        let same = self
-            .seen
-            .iter_mut()
-            .filter(|known| known.team_mate == sighting.team_mate && distance(known) < SAME);
+        let is_same =
+            |known: &&mut Track| known.obstacle.team_mate == sighting.team_mate && distance(known) < SAME;
+        let same = self.seen.iter_mut().filter(is_same);
         match same.min_by(|a, b| distance(a).total_cmp(&distance(b))) {
-            Some(known) => *known = sighting,
-            None if !full => self.seen.push(sighting),
+            // A second sighting in the same picture confirms nothing.
+            Some(known) => {
+                let is_confirmed = known.is_confirmed || known.unseen > 0;
+                *known = Track { obstacle: sighting, is_confirmed, unseen: 0 };
+            }
+            None if !full => self.seen.push(Track { obstacle: sighting, is_confirmed: false, unseen: 0 }),
             None => {}
         }
     }
@@ -60,9 +81,9 @@ impl Obstacles {
         self.seen.clear();
     }
 
-    /// The remembered robots.
+    /// The remembered robots that were seen twice.
     pub fn iter(&self) -> impl Iterator<Item = &Obstacle> {
-        self.seen.iter()
+        self.seen.iter().filter(|track| track.is_confirmed).map(|track| &track.obstacle)
     }
 }
 
@@ -76,20 +97,40 @@ mod tests {
         Obstacle { position: Point2::new(x, y), team_mate, seen_at }
     }
 
+    /// Shows the same robots in two pictures.
+    fn show_twice(obstacles: &mut Obstacles, robots: &[Obstacle]) {
+        (0..2).for_each(|_| obstacles.see(robots.iter().copied()));
+    }
+
     #[test]
     fn the_same_robot_is_remembered_once() {
         let mut obstacles = Obstacles::default();
-        obstacles.see(robot(1.0, 0.0, false, 0));
-        obstacles.see(robot(1.1, 0.1, false, 100));
-        obstacles.see(robot(1.1, 0.1, true, 100));
+        obstacles.see([robot(1.0, 0.0, false, 0)].into_iter());
+        let both = [robot(1.1, 0.1, false, 100), robot(1.1, 0.1, true, 100)];
+        show_twice(&mut obstacles, &both);
         let seen: Vec<_> = obstacles.iter().copied().collect();
-        assert_eq!(seen, [robot(1.1, 0.1, false, 100), robot(1.1, 0.1, true, 100)]);
+        assert_eq!(seen, both);
+    }
+
+    #[test]
+    fn a_single_false_sighting_or_colour_is_no_robot() {
+        let (mate, ghost) = (robot(1.0, 0.0, true, 0), robot(0.5, 1.0, false, 0));
+        let confused = Obstacle { team_mate: false, ..mate };
+        let mut obstacles = Obstacles::default();
+        obstacles.see([ghost, ghost].into_iter());
+        assert_eq!(obstacles.iter().count(), 0, "one picture confirms nothing");
+        (0..=CONFIRMATION).for_each(|_| obstacles.see([mate].into_iter()));
+        obstacles.see([confused, ghost].into_iter());
+        obstacles.see([mate].into_iter());
+        assert_eq!(obstacles.iter().copied().collect::<Vec<_>>(), [mate]);
+        obstacles.see([ghost].into_iter());
+        assert_eq!(obstacles.iter().copied().collect::<Vec<_>>(), [mate, ghost], "seen again");
     }
 
     #[test]
     fn walking_on_leaves_it_behind_and_time_forgets_it() {
         let mut obstacles = Obstacles::default();
-        obstacles.see(robot(1.0, 0.0, false, 0));
+        show_twice(&mut obstacles, &[robot(1.0, 0.0, false, 0)]);
         obstacles.advance(Timestamp::from_nanos(100_000_000), &pose(0.2, 0.0, 0.0));
         assert!((obstacles.iter().next().unwrap().position - Point2::new(0.8, 0.0)).norm() < 1e-12);
         obstacles.advance(Timestamp::from_nanos(2_000_000_000), &Isometry2::identity());
@@ -99,9 +140,8 @@ mod tests {
     #[test]
     fn the_memory_is_bounded() {
         let mut obstacles = Obstacles::default();
-        for place in 0..100 {
-            obstacles.see(robot(f64::from(place), 0.0, false, 0));
-        }
+        let robots: Vec<_> = (0..100).map(|place| robot(f64::from(place), 0.0, false, 0)).collect();
+        show_twice(&mut obstacles, &robots);
         assert_eq!(obstacles.iter().count(), MOST);
     }
 }
