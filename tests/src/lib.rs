@@ -64,16 +64,16 @@ pub const ATTACK_LOSS50: Variant =
 pub const ATTACK_RED_LOSS50: Variant =
     Variant { name: "attack_red_loss50", file: "tests/season/attack_loss50_red.xml" };
 
-/// As [`MATCH`], with the latency and the errors of real cameras.
-pub const UNKIND: Variant = Variant { name: "unkind", file: "config/match_unkind.xml" };
-/// As [`STANDING`], with the latency and the errors of real cameras.
-pub const UNKIND_STANDING: Variant =
-    Variant { name: "unkind_standing", file: "tests/season/unkind_standing.xml" };
-/// As [`ATTACK`], with the latency and the errors of real cameras.
-pub const UNKIND_ATTACK: Variant = Variant { name: "unkind_attack", file: "tests/season/unkind_attack.xml" };
+/// As [`MATCH`], with cameras without latency and errors of interpretation.
+pub const IDEAL: Variant = Variant { name: "ideal", file: "tests/season/ideal.xml" };
+/// As [`STANDING`], with cameras without latency and errors of interpretation.
+pub const IDEAL_STANDING: Variant =
+    Variant { name: "ideal_standing", file: "tests/season/ideal_standing.xml" };
+/// As [`ATTACK`], with cameras without latency and errors of interpretation.
+pub const IDEAL_ATTACK: Variant = Variant { name: "ideal_attack", file: "tests/season/ideal_attack.xml" };
 
 /// The variants that are no part of the season.
-pub const OTHER_VARIANTS: [Variant; 3] = [UNKIND, UNKIND_STANDING, UNKIND_ATTACK];
+pub const OTHER_VARIANTS: [Variant; 3] = [IDEAL, IDEAL_STANDING, IDEAL_ATTACK];
 
 /// Every variant of the season.
 pub const VARIANTS: [Variant; 11] = [

@@ -146,7 +146,7 @@ pub fn kidnap(variant: &Variant, seed: u64, length: Duration) -> Result<Kidnappi
             victim = if plays { victim } else { (victim + 1) % game.robots() };
             continue;
         }
-        let place = Pose::new(5.0 * roll() - 2.5, 3.4 * roll() - 1.7, 6.28 * roll());
+        let place = Pose::new(5.0 * roll() - 2.5, 3.4 * roll() - 1.7, std::f64::consts::TAU * roll());
         let is_free = game.running.pitch().with_world(|world| {
             let robots = world.robots().iter().map(|other| other.pose.position);
             robots.chain([world.ball().position]).all(|other| (other - place.position).norm() > 0.4)

@@ -156,29 +156,29 @@ parameters! {
         /// Probability that an object well within range and view is missed in one picture (chosen).
         sight_miss: "1" = 0.04 in 0.0 to 1.0;
         /// How many times `sight_miss` is added to itself in the worst light, which comes and goes
-        /// within half a minute, for each robot at other times; of finished sightings (constant
-        /// light; a hall with windows, chosen: 4, so that up to a fifth of the objects is missed).
-        light_change: "1" = 0.0 in 0.0 to 25.0;
+        /// within half a minute, for each robot at other times; of finished sightings (chosen for a
+        /// hall with windows: up to a fifth of the objects is missed).
+        light_change: "1" = 4.0 in 0.0 to 25.0;
         /// Time from the exposure of a picture to its delivery; time, head angles and contents are
-        /// those of the exposure (an ideal camera; Nao: 0.06, of which 5 ms are half an exposure,
-        /// 33 ms the transfer of a picture at 30 in each second, and 20 ms its interpretation).
-        camera_latency: "s" = 0.0 in 0.0 to 0.5;
+        /// those of the exposure (Nao: 5 ms are half an exposure, 33 ms the transfer of a picture
+        /// at 30 in each second, and 20 ms its interpretation).
+        camera_latency: "s" = 0.06 in 0.0 to 0.5;
         /// Probability that a picture shows a ball on the ground in view where there is none; of
-        /// finished sightings, as the next five (ideal; realistic, chosen: 0.002, every 17 s).
-        false_ball: "1" = 0.0 in 0.0 to 1.0;
-        /// The same for a goal post, of either goal (ideal; realistic, chosen: 0.002).
-        false_post: "1" = 0.0 in 0.0 to 1.0;
-        /// The same for a robot, of either team (ideal; realistic, chosen: 0.002).
-        false_robot: "1" = 0.0 in 0.0 to 1.0;
-        /// Probability that a post is taken for one of the other goal in a picture (ideal;
-        /// realistic, chosen: 0.01).
-        wrong_goal: "1" = 0.0 in 0.0 to 1.0;
+        /// finished sightings, as the next five (chosen: one in 17 s).
+        false_ball: "1" = 0.002 in 0.0 to 1.0;
+        /// The same for a goal post, of either goal (chosen).
+        false_post: "1" = 0.002 in 0.0 to 1.0;
+        /// The same for a robot, of either team (chosen).
+        false_robot: "1" = 0.002 in 0.0 to 1.0;
+        /// Probability that a post is taken for one of the other goal in a picture
+        /// (chosen).
+        wrong_goal: "1" = 0.01 in 0.0 to 1.0;
         /// Probability that a post is taken for the other one of its goal, if both are in the
-        /// picture (ideal; realistic, chosen: 0.01).
-        wrong_side: "1" = 0.0 in 0.0 to 1.0;
-        /// Probability that a robot is taken for one of the other team in a picture (ideal;
-        /// realistic, chosen: 0.01).
-        wrong_team: "1" = 0.0 in 0.0 to 1.0;
+        /// picture (chosen).
+        wrong_side: "1" = 0.01 in 0.0 to 1.0;
+        /// Probability that a robot is taken for one of the other team in a picture
+        /// (chosen).
+        wrong_team: "1" = 0.01 in 0.0 to 1.0;
 
         /// Standard deviation of the error of odometry in one step of the feet, as a part of the
         /// way (chosen).

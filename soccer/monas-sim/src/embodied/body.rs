@@ -3,8 +3,8 @@
 use std::time::Duration;
 
 use monas_robot::{
-    Actuators, Anatomy, Announcement, Camera, Error, ErrorKind, IMAGE_WIDTHS, Limits, ObjectKind, ObjectSet,
-    Percepts, Posture, Robot, Skill,
+    Actuators, Anatomy, Announcement, Camera, Error, ErrorKind, FallDetector, IMAGE_WIDTHS, Limits,
+    ObjectKind, ObjectSet, Percepts, Posture, Robot, Skill,
 };
 use narukom::Timestamp;
 
@@ -12,9 +12,7 @@ use super::image_camera::ImageCamera;
 use super::picture_queue::PictureQueue;
 use super::skill::SkillTrack;
 use super::{SharedField, announce};
-use crate::{
-    BodyPhase, Command, LineFeature, Motion, Physics, STEP, Senses, Side, Sighting, Velocity,
-};
+use crate::{BodyPhase, Command, LineFeature, Motion, Physics, STEP, Senses, Side, Sighting, Velocity};
 
 /// Interval at which an unchanged announcement is repeated, as by a game controller.
 const ANNOUNCE_EVERY: Duration = Duration::from_millis(500);
@@ -25,6 +23,7 @@ pub struct FieldBody {
     robot: usize,
     anatomy: Anatomy,
     senses: Senses,
+    falls: FallDetector,
     skill: SkillTrack,
     command: Actuators,
     announced: Option<(Timestamp, Announcement)>,
@@ -50,12 +49,13 @@ impl FieldBody {
             let physics = world.physics();
             (anatomy(physics, longest_message), Duration::from_secs_f64(physics.camera_latency))
         });
-        let (senses, skill, command) = Default::default();
+        let (senses, falls, skill, command) = Default::default();
         FieldBody {
             pitch,
             robot,
             anatomy,
             senses,
+            falls,
             skill,
             command,
             announced: None,
@@ -95,11 +95,11 @@ impl FieldBody {
             chest_button: buttons.chest,
             left_bumper: buttons.left_bumper,
             right_bumper: buttons.right_bumper,
-            posture: posture(self.senses.phase, *is_lifted) as i32,
+            posture: posture(self.senses.phase, *is_lifted, self.falls) as i32,
             skill_done,
             skill_result: skill_result as i32,
             battery: 1.0,
-            relaxed: self.rests && (self.senses.phase == BodyPhase::Sitting || self.senses.phase.is_fallen()),
+            relaxed: self.rests && (self.senses.phase == BodyPhase::Sitting || self.falls.is_fallen()),
         };
     }
 
@@ -158,6 +158,7 @@ impl Robot for FieldBody {
         if self.rests || (was_busy && self.skill.motion().is_none()) {
             self.drive()?;
         }
+        self.falls.measure(self.senses.torso_roll, self.senses.torso_pitch);
         self.feel(now, &mut percepts.sensors);
         self.expose(now)?;
         percepts.sightings = None;
@@ -244,17 +245,18 @@ fn cycle(physics: &Physics) -> Duration {
     Duration::from_millis((steps * STEP * 1e3).round() as u64)
 }
 
-fn posture(phase: BodyPhase, is_lifted: bool) -> Posture {
+/// The posture as the body knows it: its own motions, the contact of its feet, and the inclination
+/// of its torso, from which it finds that it has lost its balance, and that it lies.
+fn posture(phase: BodyPhase, is_lifted: bool, falls: FallDetector) -> Posture {
     match phase {
         _ if is_lifted => Posture::Lifted,
-        BodyPhase::Standing => Posture::Standing,
-        BodyPhase::Walking => Posture::Walking,
-        BodyPhase::Kicking(_) | BodyPhase::SideFalling(_) | BodyPhase::Diving(_) | BodyPhase::Falling(_) => {
-            Posture::Busy
-        }
-        BodyPhase::Fallen(_) => Posture::Fallen,
+        BodyPhase::Kicking(_) | BodyPhase::SideFalling(_) | BodyPhase::Diving(_) => Posture::Busy,
         BodyPhase::StandingUp => Posture::StandingUp,
         BodyPhase::SittingDown | BodyPhase::Sitting => Posture::Sitting,
+        _ if falls.is_fallen() => Posture::Fallen,
+        _ if falls.is_inclined() => Posture::Busy,
+        BodyPhase::Walking => Posture::Walking,
+        BodyPhase::Standing | BodyPhase::Falling(_) | BodyPhase::Fallen(_) => Posture::Standing,
     }
 }
 
@@ -308,11 +310,15 @@ mod tests {
     use crate::{FieldSide, RobotSetup, Setup, SimulatedWorld, TeamColour, TeamSetup};
 
     fn pitch() -> SharedField {
+        pitch_with(Physics::default())
+    }
+
+    fn pitch_with(physics: Physics) -> SharedField {
         let team =
             |number, colour, plays| TeamSetup { number, name: format!("team {number}"), colour, plays };
         let setup = Setup {
             field: Default::default(),
-            physics: Default::default(),
+            physics,
             rules: Default::default(),
             radio: Default::default(),
             objects: Default::default(),
@@ -321,6 +327,31 @@ mod tests {
             seed: 7,
         };
         SharedField::new(SimulatedWorld::new(setup).unwrap())
+    }
+
+    #[test]
+    fn a_fall_is_found_from_the_inclination_of_the_torso() {
+        let pitch = pitch_with(Physics { fall_rate_walking: 10.0, ..Physics::default() });
+        let mut body = pitch.body(0).unwrap();
+        let walk = Actuators { walk_x: 0.2, ..Actuators::default() };
+        let (mut percepts, mut postures) = (Percepts::default(), Vec::new());
+        for cycle in 0..700 {
+            let now = Timestamp::from_nanos(cycle * 20_000_000);
+            (0..2).for_each(|_| pitch.lock().world.step());
+            body.sense(now, &mut percepts).unwrap();
+            body.act(now, &walk).unwrap();
+            let monas_robot::Sensors { torso_roll, torso_pitch, .. } = percepts.sensors;
+            let posture = percepts.sensors.posture();
+            match torso_roll.abs().max(torso_pitch.abs()) {
+                tilt if tilt < 0.35 => assert!(!matches!(posture, Posture::Busy | Posture::Fallen), "{tilt}"),
+                tilt if tilt > 1.05 => assert_eq!(posture, Posture::Fallen, "{tilt}"),
+                _ => {}
+            }
+            if postures.last() != Some(&posture) {
+                postures.push(posture);
+            }
+        }
+        assert!(postures.ends_with(&[Posture::Busy, Posture::Fallen]), "{postures:?}");
     }
 
     #[test]

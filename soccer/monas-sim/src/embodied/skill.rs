@@ -34,8 +34,7 @@ impl SkillTrack {
         self.number = actuators.skill_number;
         match motion_of(actuators.skill()) {
             Some(motion) if self.active.is_none() => {
-                // What is not a number is zero.
-                let ball_speed = actuators.ball_speed.max(0.0).min(f64::MAX);
+                let ball_speed = if actuators.ball_speed.is_finite() { actuators.ball_speed } else { 0.0 };
                 self.active = Some(ActiveSkill { motion, ball_speed, begun: false, readings: 0 });
             }
             // No skill, or one requested while another is active: it ends at once.

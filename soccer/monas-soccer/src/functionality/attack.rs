@@ -31,7 +31,7 @@ const SHOT: f64 = 1.0;
 const HAS: f64 = 0.1;
 /// Distance from the goal beyond which a pass is better than a shot, metres: from 2 m and more a
 /// goalie lets in a few of a hundred shots.
-const SHOT_LENGTH: f64 = 1.6;
+const SHOT_LENGTH: f64 = 1.8;
 /// Distance from the ball within which the center has its part, metres. A player that is farther
 /// away walks to the ball as it would alone.
 const BEGIN: f64 = 1.0;
@@ -230,7 +230,7 @@ fn pass_pays(scene: &AttackSituation<'_>, receiver: Point2<f64>) -> bool {
 }
 
 /// Greatest angle between a pass and a shot, radians.
-const ASIDE: f64 = 0.8;
+const ASIDE: f64 = 0.7;
 
 fn path_is_clear(scene: &AttackSituation<'_>) -> bool {
     faces_goal(scene) && is_free(scene, shot_target(&scene.field, scene.ball, scene.opponents))
