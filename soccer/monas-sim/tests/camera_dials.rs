@@ -26,8 +26,8 @@ fn clear() -> Physics {
 }
 
 /// Pictures of a blue robot at the centre of the field that looks at the yellow goal, with the ball
-/// 1 m before it, a team mate on the left and an opponent on the right. Without the lines, which have
-/// none of these errors.
+/// 1 m before it, a team mate on the left and an opponent on the right. Without the lines, which
+/// have none of these errors.
 fn pictures(physics: Physics, count: usize) -> Vec<Vec<Sighting>> {
     let robots = [(1, 2), (1, 3), (2, 2)].map(|(team, number)| RobotSetup { team, number });
     let setup = Setup { physics, robots: robots.to_vec(), ..Setup::three_against_three(4) };

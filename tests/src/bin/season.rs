@@ -3,8 +3,8 @@
 //! `season row VARIANT SEED SECONDS` plays one match and prints its row, `season rows VARIANT 1-20
 //! SECONDS` several and their sums, `season count` with the arguments of `row` prints passes,
 //! kick-offs, crowding and the time in each state. `season poses VARIANT 1-20 SECONDS` prints how
-//! far the robots' poses are from the truth, and how long robots need that are carried away. They know
-//! the variants of the season and those with ideal cameras.
+//! far the robots' poses are from the truth, and how long robots need that are carried away. They
+//! know the variants of the season and those with ideal cameras.
 
 use std::process::ExitCode;
 use std::time::Duration;

@@ -11,9 +11,9 @@ use crate::functionality::field::Goal;
 use crate::functionality::head::{Gaze, HeadController};
 use crate::topics;
 
-/// Looks for a moment at the goal that is nearer to the direction of the ball. A robot that does not
-/// know where that is looks to its sides instead, one after the other, past what lies between. The
-/// body does not move.
+/// Looks for a moment at the goal that is nearer to the direction of the ball. A robot that does
+/// not know where that is looks to its sides instead, one after the other, past what lies between.
+/// The body does not move.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct LookAtGoal {
     head: HeadController,

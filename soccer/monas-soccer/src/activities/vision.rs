@@ -21,8 +21,8 @@ use crate::{FieldLines, GameState, convert, topics};
 ///
 /// Sightings are related to the odometry at the time of the image, which Sensors keeps, and
 /// propagated to the time of publication. A ball or a robot counts once two of a few images show
-/// it, since images show things that are not there. A placement by the referee resets the pose and discards
-/// earlier sightings.
+/// it, since images show things that are not there. A placement by the referee resets the pose and
+/// discards earlier sightings.
 ///
 /// Parameters `memory` (s): how long a ball counts as found after it was last seen;
 /// `rolling_deceleration` (m/s²) of the ball; `least_speed` (m/s) and `reach` (m): least speed, and
@@ -311,8 +311,8 @@ mod tests {
         let (none, latency) = (Duration::ZERO, Duration::from_millis(60));
         for (speed, turn) in [(0.0, 0.0), (0.0, 1.2), (1.0, 0.0), (1.0, -1.2), (0.5, 1.2)] {
             let (prompt, late) = (greatest_error(speed, turn, none), greatest_error(speed, turn, latency));
-            // Without propagation to the present, the ball lags by latency * speed, and a turn at 2 m
-            // displaces it by 0.14 m.
+            // Without propagation to the present, the ball lags by latency * speed, and a turn at
+            // 2 m displaces it by 0.14 m.
             let explained = latency.as_secs_f64() * speed / 2.0 + 0.005;
             assert!(late <= prompt + explained, "{speed} m/s, {turn} rad/s: {prompt} m, late {late} m");
             assert!(prompt < 0.05, "{speed} m/s, {turn} rad/s: {prompt} m");

@@ -11,8 +11,8 @@ const ASIDE: f64 = 0.85;
 const FROM_GOAL_LINE: f64 = 0.8;
 const FROM_TOUCH_LINE: f64 = 0.5;
 
-/// The position `ahead` metres before the ball, on the player's side of it, where a rebound from the
-/// goalkeeper can be reached and a shot is not blocked. All in the field frame.
+/// The position `ahead` metres before the ball, on the player's side of it, where a rebound from
+/// the goalkeeper can be reached and a shot is not blocked. All in the field frame.
 pub fn support_place(field: &FieldModel, ball: Point2<f64>, player: Point2<f64>, ahead: f64) -> Point2<f64> {
     let x = (ball.x + ahead).min(field.length / 2.0 - FROM_GOAL_LINE);
     let reach = (field.width / 2.0 - FROM_TOUCH_LINE).max(0.0);
