@@ -6,7 +6,7 @@ use std::time::Duration;
 use monas_match::{MatchOptions, MatchSource};
 use monas_nao::SimulatedNao; // the body registers itself at link time
 use monas_robot::{Disturbances, ObjectKind, Percepts, Robot, Sighting, WrappedBody};
-use monas_sim::{MatchRules, Pose, Setup, SharedField, SimulatedWorld, Vector};
+use monas_sim::{MatchRules, Physics, Pose, Setup, SharedField, SimulatedWorld, Vector};
 use monas_soccer::image_interpreter::{ImageInterpreter, Interpretation};
 use monas_tests::{BallKnowledge, TODAY};
 use narukom::Timestamp;
@@ -15,7 +15,10 @@ use narukom::Timestamp;
 fn world(seed: u64) -> SimulatedWorld {
     let rules =
         MatchRules { initial_duration: 0.0, ready_duration: 0.0, set_duration: 0.0, ..MatchRules::default() };
-    let mut world = SimulatedWorld::new(Setup { rules, ..Setup::three_against_three(seed) }).unwrap();
+    // The truth is that of the moment of the image.
+    let physics = Physics { camera_latency: 0.0, ..Physics::default() };
+    let setup = Setup { rules, physics, ..Setup::three_against_three(seed) };
+    let mut world = SimulatedWorld::new(setup).unwrap();
     (0..20).for_each(|_| world.step());
     for robot in [0, 2, 3, 4, 5] {
         world.place_robot(robot, Pose::new(-2.8 + 0.4 * robot as f64, 2.4, 0.0)).unwrap();
@@ -158,7 +161,7 @@ fn a_robot_that_sees_images_finds_and_moves_the_ball() {
         });
         let mut running = plan.start(MatchOptions { seed: 1, ..MatchOptions::default() }).unwrap();
         // READY ends when the blind robots have turned once around.
-        running.advance(Duration::from_secs(32)).unwrap();
+        running.advance(Duration::from_secs(42)).unwrap();
         running.pitch().with_world(|world| world.ball().position.norm())
     };
     assert!(displaced(Eyes::Field) > 0.3, "the ball is where it was");
@@ -182,7 +185,7 @@ fn the_matches_with_images_start_and_repeat() {
 
 #[test]
 fn a_robot_plays_with_todays_objects_from_images() {
-    let play = |images| BallKnowledge::of_match(&TODAY, images, 1, Duration::from_secs(15)).unwrap();
+    let play = |images| BallKnowledge::of_match(&TODAY, images, 1, Duration::from_secs(20)).unwrap();
     let (sightings, images) = (play(None), play(Some(320)));
     println!("finished sightings: {sightings:?}\nimages: {images:?}");
     for known in [&sightings, &images] {

@@ -139,7 +139,7 @@ impl Default for CheckSettings {
     fn default() -> CheckSettings {
         CheckSettings {
             events: BTreeSet::new(),
-            states: 100_000,
+            states: 300_000,
             bytes: 1 << 30,
             observer: ProgressObserver::default(),
             pool: None,

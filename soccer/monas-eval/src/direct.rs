@@ -184,16 +184,13 @@ impl<B: Behaviour> DirectRobot<B> {
                 self.vision_at = now + B::VISION;
                 self.process_image();
             }
-            let state = self.memory.game.state();
-            if now >= self.decision_at
-                && self.memory.has_new_ball
-                && matches!(state, PlayerState::Ready | PlayerState::Playing)
-            {
+            if now >= self.decision_at && self.memory.has_new_ball {
                 self.decision_at = now + PERIOD;
                 self.memory.has_new_ball = false;
-                match state {
+                match self.memory.game.state() {
                     PlayerState::Ready => self.memory.take_place(),
-                    _ => self.behaviour.decide(&mut self.memory),
+                    PlayerState::Playing => self.behaviour.decide(&mut self.memory),
+                    _ => {}
                 }
             }
         }
@@ -280,7 +277,7 @@ impl<B: Behaviour> DirectRobot<B> {
         memory.robots = perception.robots();
         memory.ball = perception.ball(&self.model, &memory.robots, Some(memory.game.field()));
         memory.pose = perception.pose();
-        memory.has_new_ball = true;
+        memory.has_new_ball = matches!(memory.game.state(), PlayerState::Ready | PlayerState::Playing);
     }
 
     fn command(&mut self, now: Timestamp) -> Result<(), Error> {

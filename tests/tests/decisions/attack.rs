@@ -82,7 +82,7 @@ fn two_players_engage_in_the_protocol_and_leave_it_by_each_outcome() {
 
 #[test]
 fn the_same_seed_gives_the_same_attacks() {
-    let turns = played("config/match_attack.xml", 1, 30);
+    let turns = played("config/match_attack.xml", 1, 90);
     assert!(!turns.is_empty());
-    assert_eq!(played("config/match_attack.xml", 1, 30), turns);
+    assert_eq!(played("config/match_attack.xml", 1, 90), turns);
 }

@@ -25,7 +25,7 @@ fn a_run_is_logged_as_configured() {
     let log = || fs::read_to_string(folder.path().join("a.log")).expect("a log");
     let first = log();
     for line in [
-        "    0.000000 s DEBUG [blue-1 Goalie] no way out",
+        "    0.500000 s DEBUG [blue-1 Goalie] no way out",
         "    1.000000 s INFO  [red-1 Goalie] stopped: the run has ended",
     ] {
         assert!(first.contains(line), "{first}");

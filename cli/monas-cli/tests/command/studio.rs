@@ -39,13 +39,13 @@ fn why_names_the_transitions_and_the_messages_that_their_conditions_read() {
     let tape = folder.path().join("match.mcap");
     let tape = tape.to_str().expect("a path in UTF-8");
     let run =
-        monas(&["run", "config/match.xml", "--for", "12s", "--seed", "1", "--no-control", "--record", tape]);
+        monas(&["run", "config/match.xml", "--for", "17s", "--seed", "1", "--no-control", "--record", tape]);
     assert_eq!(run.code, Some(0), "{}", run.err);
     // the entry of a state that was chosen by its condition
     let charts = monas(&["tape", "export", tape, "--topic", "sim/incident"]).out;
     assert!(charts.contains("kick-off"), "{charts}");
     let why = |state: &str, more: &[&str]| {
-        monas(&[&["why", tape, "blue-2", "--state", state, "--at", "12"], more].concat())
+        monas(&[&["why", tape, "blue-2", "--state", state, "--at", "17"], more].concat())
     };
     let json = why("search", &["--format", "json"]);
     assert_eq!(json.code, Some(0), "{}", json.err);
@@ -71,7 +71,7 @@ fn why_names_the_transitions_and_the_messages_that_their_conditions_read() {
     assert!(monas(&["why", tape, "blue-9", "--state", "x", "--at", "1"]).err.contains("no host"));
 
     let not = |transition: &str, more: &[&str]| {
-        monas(&[&["why", tape, "blue-2", "--transition", transition, "--at", "8.3"], more].concat())
+        monas(&[&["why", tape, "blue-2", "--transition", transition, "--at", "13.1"], more].concat())
     };
     let json = not("CONDITION -> WalkTowardsBall", &["--format", "json"]);
     assert_eq!(json.code, Some(0), "{}", json.err);
@@ -129,9 +129,9 @@ fn another_guard_from_a_moment_on_gives_another_future_and_the_same_guard_the_sa
     let tape = folder.path().join("match.mcap");
     let tape = tape.to_str().expect("a path in UTF-8");
     let run =
-        monas(&["run", "config/match.xml", "--for", "12s", "--seed", "1", "--no-control", "--record", tape]);
+        monas(&["run", "config/match.xml", "--for", "17s", "--seed", "1", "--no-control", "--record", tape]);
     assert_eq!(run.code, Some(0), "{}", run.err);
-    let what_if = |more: &[&str]| monas(&[&["tape", "what-if", tape, "--at", "7.75s"], more].concat());
+    let what_if = |more: &[&str]| monas(&[&["tape", "what-if", tape, "--at", "12.55s"], more].concat());
     let object = |more: &[&str]| -> Value {
         let answer = what_if(&[more, &["--format", "json"]].concat());
         assert_eq!(answer.code, Some(0), "{}", answer.err);
@@ -140,14 +140,14 @@ fn another_guard_from_a_moment_on_gives_another_future_and_the_same_guard_the_sa
     let same = object(&["--guard", "CONDITION -> search=[!Ball.found]"]);
     assert_eq!((&same["difference"], same["changes"].as_array().map(Vec::len)), (&Value::Null, Some(6)));
     assert_eq!(same["recorded"], same["what_if"]);
-    // the kick of the attacker at 7.8 s
+    // the kick of the attacker at 12.6 s
     let other = folder.path().join("other.mcap");
     let other = other.to_str().expect("a path in UTF-8");
     let arguments = ["--guard", "CONDITION -> kickBall=[false]", "--host", "blue-2", "-o", other];
     let without = object(&arguments);
     let difference = &without["difference"];
     assert_eq!((&difference["host"], &difference["topic"]), (&"blue-2".into(), &"soccer/motion".into()));
-    assert_eq!((difference["time"].as_f64(), &difference["first"]["kind"]), (Some(7.8), &"KICK_LEFT".into()));
+    assert_eq!((difference["time"].as_f64(), &difference["first"]["kind"]), (Some(12.6), &"KICK_RIGHT".into()));
     assert_ne!(without["recorded"]["events"], without["what_if"]["events"]);
     // a parameter of an activity takes effect, on the robots that are named
     let slow = object(&["--set", "agent.Attacker.MotionController.walk_forward=0.05", "--host", "blue-3"]);
@@ -158,8 +158,8 @@ fn another_guard_from_a_moment_on_gives_another_future_and_the_same_guard_the_sa
     let difference = &slow["difference"];
     assert_eq!((&difference["host"], &difference["topic"]), (&"blue-3".into(), &"body/actuators".into()));
     assert!(difference["first"]["walk_x"].as_f64() > difference["second"]["walk_x"].as_f64(), "{difference}");
-    assert!(difference["time"].as_f64().is_some_and(|time| (7.75..8.0).contains(&time)), "{difference}");
-    let why = monas(&["why", other, "blue-2", "--transition", "CONDITION -> kickBall", "--at", "12"]);
+    assert!(difference["time"].as_f64().is_some_and(|time| (12.55..12.8).contains(&time)), "{difference}");
+    let why = monas(&["why", other, "blue-2", "--transition", "CONDITION -> kickBall", "--at", "17"]);
     assert_eq!(why.code, Some(0), "{}", why.err);
 
     let refused = |more: &[&str], reason: &str| {

@@ -61,7 +61,7 @@ fn loops_wait_and_set_their_timer_again() {
         let timers: Vec<String> = loops
             .flat_map(|(_, transition)| transition.expression.started_timers().collect::<Vec<_>>())
             .collect();
-        let expected = ["robot", "led", "motion", "sensors", "vision", "decision"]
+        let expected = ["robot", "led", "motion", "sensors", "vision", "place", "decision"]
             .map(|timer| format!("{timer}_timeout"));
         assert_eq!(timers, expected, "{name}");
     }

@@ -222,9 +222,9 @@ mod tests {
             number: 3,
             ball_found: true,
             ball_x: -2.9,
-            ball_y: 1.2,
+            ball_y: 0.9,
             x: -2.5,
-            y: 1.5,
+            y: 1.2,
             ball_distance: 0.5,
             ..far()
         };

@@ -344,7 +344,7 @@ mod tests {
         assert!(it.part == Some(AttackRole::CenterFor) && it.ball_is_passed && it.path_is_clear);
         let it = evaluate(&scene(passer, &[other], &[]));
         assert!(it.part.is_none() && it.ball_is_passed && !it.shot_at_goal, "it has done its part");
-        let forgotten = AttackPlayer { since_pass: PASSED, ..player(0.8, 0.7) };
+        let forgotten = AttackPlayer { since_pass: PASSED, ..player(0.9, 0.5) };
         let it = evaluate(&scene(forgotten, &[other], &[]));
         assert!(it.part == Some(AttackRole::CenterFor) && !it.ball_is_passed);
     }
@@ -377,11 +377,11 @@ mod tests {
 
     #[test]
     fn no_pass_is_planned_where_a_shot_is_better_or_backwards() {
-        let (own, mate) = (player(-1.0, 0.0), player(1.0, 0.9));
+        let (own, mate) = (player(-1.0, 0.0), player(1.2, 0.7));
         let part =
             |ball: Point2<f64>, mate| evaluate(&AttackSituation { ball, ..scene(own, &[mate], &[]) }).part;
         assert_eq!(part(Point2::origin(), mate), Some(AttackRole::Center));
-        assert_eq!(part(Point2::new(0.9, 0.0), mate), None, "the goal is near enough");
+        assert_eq!(part(Point2::new(1.3, 0.0), mate), None, "the goal is near enough");
         assert_eq!(part(Point2::new(-2.7, 0.0), mate), None, "no field player may enter the own area");
         assert_eq!(part(Point2::origin(), player(-1.0, 1.5)), None, "the mate is behind the ball");
     }
