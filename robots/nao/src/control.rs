@@ -90,10 +90,6 @@ impl NaoControl {
         self.walk = walk;
     }
 
-    pub(crate) fn set_actions(&mut self, actions: SpecialActions) {
-        self.actions = actions;
-    }
-
     pub(crate) fn anatomy(&self) -> &Anatomy {
         &self.anatomy
     }

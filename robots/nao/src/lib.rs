@@ -108,11 +108,11 @@ fn open(site: BodySite) -> Result<Box<dyn Robot>, monas_robot::Error> {
     let actions = motions::SpecialActions::of(&site.options)?;
     match site {
         BodySite { simulated: Some(body), address: None, .. } => {
-            Ok(Box::new(SimulatedNao::new(body)?.with_actions(actions)))
+            Ok(Box::new(SimulatedNao::with_actions(body, actions)?))
         }
         BodySite { address, options, .. } => {
-            let nao = Nao::open(Path::new(address.as_deref().unwrap_or(lola::SOCKET)))?;
-            Ok(Box::new(nao.with_actions(actions).with_cameras(CameraPlaces::of(&options))))
+            let path = Path::new(address.as_deref().unwrap_or(lola::SOCKET));
+            Ok(Box::new(Nao::with_actions(path, actions)?.with_cameras(CameraPlaces::of(&options))))
         }
     }
 }

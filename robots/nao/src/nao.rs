@@ -78,6 +78,15 @@ impl Nao {
         if let Some(walk) = walk {
             control.set_walk(walk);
         }
+        Nao::connect(path, control)
+    }
+
+    /// As [`open`](Nao::open), with these special actions.
+    pub(crate) fn with_actions(path: &Path, actions: SpecialActions) -> Result<Nao, Error> {
+        Nao::connect(path, NaoControl::new(actions))
+    }
+
+    fn connect(path: &Path, control: NaoControl) -> Result<Nao, Error> {
         let state = ControlState {
             control,
             is_connected: false,
@@ -113,13 +122,6 @@ impl Nao {
                 Err(Error::new(ErrorKind::Disconnected, format!("no LoLA answers at {}", path.display())))
             }
         }
-    }
-
-    /// The body with these special actions.
-    #[must_use]
-    pub(crate) fn with_actions(self, actions: SpecialActions) -> Nao {
-        self.shared.lock().control.set_actions(actions);
-        self
     }
 
     /// The body with its cameras in other places than those of a Nao V6. They are opened by

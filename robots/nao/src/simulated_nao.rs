@@ -32,10 +32,15 @@ impl SimulatedNao {
     /// # Errors
     /// The sockets cannot be created.
     pub fn new(body: Box<dyn Robot>) -> Result<SimulatedNao, Error> {
+        SimulatedNao::with_actions(body, SpecialActions::of(&BTreeMap::new())?)
+    }
+
+    /// As [`new`](SimulatedNao::new), with these special actions.
+    pub(crate) fn with_actions(body: Box<dyn Robot>, actions: SpecialActions) -> Result<SimulatedNao, Error> {
         let (server, lola) = Socket::pair()?;
         let (simulated, channels) = side_channels::pair()?;
         let server = LolaServer::new(body, server, simulated);
-        let mut control = NaoControl::new(SpecialActions::of(&BTreeMap::new())?);
+        let mut control = NaoControl::new(actions);
         control.anatomy_mut().radio = server.radio();
         Ok(SimulatedNao {
             server,
@@ -45,13 +50,6 @@ impl SimulatedNao {
             sensors: SensorPacket::default(),
             bytes: Vec::new(),
         })
-    }
-
-    /// The body with these special actions.
-    #[must_use]
-    pub(crate) fn with_actions(mut self, actions: SpecialActions) -> SimulatedNao {
-        self.control.set_actions(actions);
-        self
     }
 }
 
