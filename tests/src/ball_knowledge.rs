@@ -13,6 +13,13 @@ use crate::root;
 /// Time between two samples.
 const EVERY: Duration = Duration::from_millis(100);
 
+/// Age, after the latency of the camera, from which a ball is no longer known, s: images are 0.1 s
+/// apart.
+const KNOWN_FOR: f64 = 0.15;
+
+/// Samples after which a ball in view has to be known.
+const SETTLED: u32 = 3;
+
 /// The index in the world of blue's first attacker, `blue-2`.
 const WATCHED: usize = 1;
 
@@ -22,11 +29,13 @@ pub const TODAY: [&str; 2] = ["match.objects=today", "simulator.physics.ball_rad
 /// Samples of the estimate of the ball that one robot of a match has, and its play.
 #[derive(Clone, PartialEq, Debug, Default)]
 pub struct BallKnowledge {
-    /// Samples of the robot in play that has the ball in view, not hidden and at most 3 m away.
+    /// Samples of the robot in play that had the ball in view for 0.3 s, not hidden and at most 3 m
+    /// away: the time of the two images that it takes to know a ball, and of the latency.
     pub in_view: usize,
-    /// Those in which it saw the ball in the last 0.15 s and at most 25 % from its place.
+    /// Those in which it knows an image of the last 0.15 s, before the latency of its camera, that
+    /// shows the ball at most 25 % from its place.
     pub known: usize,
-    /// Those in which it saw a ball in the last 0.15 s that is farther from its place.
+    /// Those in which such an image shows a ball that is farther from its place.
     pub wrong: usize,
     /// The sum of the errors of the distance of the known balls, relative to the distance.
     error_sum: f64,
@@ -34,20 +43,37 @@ pub struct BallKnowledge {
     poses: (usize, f64),
     /// Its kicks that hit the ball.
     pub kicks: u32,
+    /// For how many samples the ball has been in view.
+    views: u32,
 }
 
 impl BallKnowledge {
-    /// Plays `config/match.xml` for a duration, from kick-off, with settings as of `--set`, and
-    /// watches blue's first attacker. Its cameras deliver images of a width, or finished sightings.
+    /// Plays `config/match.xml` for a duration with each seed, from kick-off, with settings as of
+    /// `--set`, and watches blue's first attacker. Its cameras deliver images of a width, or
+    /// finished sightings.
     ///
     /// # Errors
     /// The diagnostics of its files or settings, or the failure.
-    pub fn of_match(
+    pub fn of_matches(
+        settings: &[&str],
+        image_width: Option<u32>,
+        seeds: &[u64],
+        length: Duration,
+    ) -> Result<BallKnowledge, String> {
+        let mut sum = BallKnowledge::default();
+        for seed in seeds {
+            sum.add_match(settings, image_width, *seed, length)?;
+        }
+        Ok(sum)
+    }
+
+    fn add_match(
+        &mut self,
         settings: &[&str],
         image_width: Option<u32>,
         seed: u64,
         length: Duration,
-    ) -> Result<BallKnowledge, String> {
+    ) -> Result<(), String> {
         let grammar = monas_match::grammar();
         let body = image_width.map(|width| {
             let body = "match.team.1.robot.2.body";
@@ -65,18 +91,19 @@ impl BallKnowledge {
                 .map_err(|found| found.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"))?;
         let mut running =
             plan.start(MatchOptions { seed, record: None }).map_err(|error| error.to_string())?;
-        let mut sum = BallKnowledge::default();
+        self.views = 0;
         let board = running.simulation().and_then(|simulation| simulation.hub("blue-2"));
         let mut board = board.ok_or("no robot blue-2")?.blackboard("compared with the truth");
         while running.now() < length {
             running.advance(running.now() + EVERY).map_err(|error| error.to_string())?;
             let Some(now) = running.simulation().map(|simulation| simulation.now()) else { break };
             board.process_messages(now);
-            running.pitch().with_world(|world| sum.sample(world, &board));
+            running.pitch().with_world(|world| self.sample(world, &board));
         }
         let kicks =
             running.pitch().with_world(|world| world.statistics().robot(WATCHED).map(|it| it.strikes));
-        Ok(BallKnowledge { kicks: kicks.unwrap_or_default(), ..sum })
+        self.kicks += kicks.unwrap_or_default();
+        Ok(())
     }
 
     /// The share of the samples in view in which the ball is known.
@@ -111,8 +138,15 @@ impl BallKnowledge {
             self.poses.1 += errors[usize::from(attacks_left)];
         }
         let truth = state.pose.to_own(world.ball().position);
-        let ball = board.read(topics::BALL).filter(|ball| ball.found && ball.age < 0.15);
+        let ball = board
+            .read(topics::BALL)
+            .filter(|ball| ball.found && ball.age < KNOWN_FOR + world.physics().camera_latency);
         if !is_in_view(world, WATCHED) {
+            self.views = 0;
+            return;
+        }
+        self.views += 1;
+        if self.views <= SETTLED {
             return;
         }
         self.in_view += 1;

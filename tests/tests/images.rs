@@ -185,7 +185,7 @@ fn the_matches_with_images_start_and_repeat() {
 
 #[test]
 fn a_robot_plays_with_todays_objects_from_images() {
-    let play = |images| BallKnowledge::of_match(&TODAY, images, 1, Duration::from_secs(20)).unwrap();
+    let play = |images| BallKnowledge::of_matches(&TODAY, images, &[1, 2], Duration::from_secs(20)).unwrap();
     let (sightings, images) = (play(None), play(Some(320)));
     println!("finished sightings: {sightings:?}\nimages: {images:?}");
     for known in [&sightings, &images] {

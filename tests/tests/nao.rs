@@ -6,6 +6,7 @@
 
 #![allow(clippy::unwrap_used)] // tests may panic
 
+use std::thread;
 use std::time::Duration;
 
 use monas_nao as _; // the body registers itself at link time
@@ -15,7 +16,7 @@ const FIELD: Variant = Variant { name: "shooters", file: "tests/season/shooters.
 const NAO: Variant = Variant { name: "shooters_nao", file: "tests/season/shooters_nao.xml" };
 
 /// Seeds and length of the short comparison.
-const SHORT: (u64, Duration) = (3, Duration::from_secs(100));
+const SHORT: (u64, Duration) = (4, Duration::from_secs(200));
 
 /// Goals conceded and saves of the goalie, over the seeds.
 fn figures(variant: &Variant, seeds: u64, length: Duration) -> (u32, u32) {
@@ -29,8 +30,11 @@ fn the_goalie_defends_through_the_interface_of_a_nao() {
     let many =
         std::env::var("MONAS_SHOOTERS").ok().map(|seeds| (seeds.parse().unwrap(), Duration::from_secs(300)));
     let (seeds, length) = many.unwrap_or(SHORT);
-    let [(conceded, saves), (conceded_nao, saves_nao)] =
-        [&FIELD, &NAO].map(|one| figures(one, seeds, length));
+    let [(conceded, saves), (conceded_nao, saves_nao)] = thread::scope(|scope| {
+        [&FIELD, &NAO]
+            .map(|one| scope.spawn(move || figures(one, seeds, length)))
+            .map(|of_one| of_one.join().unwrap())
+    });
     println!(
         "{seeds} matches of {} s: conceded {conceded}, saves {saves}; as a Nao conceded {conceded_nao}, saves {saves_nao}",
         length.as_secs()

@@ -254,10 +254,13 @@ pub(crate) fn ball_sighting(sighting: Sighting) -> BallSighting {
     BallSighting { distance: sighting.distance, bearing: sighting.bearing }
 }
 
-/// A sighting of a landmark; none for other objects, and for a post that does not say of which
-/// goal it is.
+/// A sighting of a landmark; none for other objects, and for a coloured post while the sides are
+/// not known.
 pub(crate) fn landmark(sighting: &Sighting, game: &GameState) -> Option<LandmarkSighting> {
-    let post = |post| Some(Landmark::Post(game.goal_of(sighting.colour)?, post));
+    let post = |post| match sighting.colour() {
+        monas_robot::Colour::White => Some(Landmark::PostOfEitherGoal(post)),
+        _ => Some(Landmark::Post(game.goal_of(sighting.colour)?, post)),
+    };
     let landmark = match sighting.kind() {
         ObjectKind::LeftPost => post(GoalPost::Left)?,
         ObjectKind::RightPost => post(GoalPost::Right)?,

@@ -4,18 +4,18 @@
 //! blackboard, for programs that have none.
 
 use monas_robot::{ObjectKind, Posture, Sighting, Sightings};
-use nalgebra::Isometry2;
+use nalgebra::{Isometry2, Point2};
 use narukom::Timestamp;
 
 use crate::functionality::ball_filter::{BallEstimate, BallFilter, BallModel};
 use crate::functionality::field::FieldModel;
 use crate::functionality::geometry;
 use crate::functionality::interception::{Crossing, crossing};
-use crate::functionality::landmarks::LandmarkSighting;
+use crate::functionality::landmarks::{LandmarkSighting, LineSighting};
 use crate::functionality::localisation::{Localisation, LocalisationModel, PoseEstimate};
 use crate::functionality::obstacles::{Obstacle, Obstacles};
 use crate::functionality::placement;
-use crate::{Ball, GameState, OtherRobot, Placement, Pose, Robots, convert};
+use crate::{Ball, FieldLines, GameState, OtherRobot, Placement, Pose, Robots, convert};
 
 /// When a ball counts as found and as approaching.
 #[derive(Clone, Copy, Debug)]
@@ -60,6 +60,10 @@ const NOBODY: f64 = 1e6;
 
 /// Standard deviation of a pose at which the robot has put itself: metres and radians.
 const PLACED: (f64, f64) = (0.05, 0.05);
+
+/// Least length of a line, and the farthest distance of its middle, that corrects the pose, metres.
+const LEAST_LINE: f64 = 0.15;
+const FARTHEST_LINE: f64 = 3.0;
 
 impl Perception {
     /// Filters that have seen nothing. The odometry is the pose of the robot relative to any fixed
@@ -123,7 +127,7 @@ impl Perception {
         let taken_at = Timestamp::from_nanos(image.taken_at);
         self.taken_at = image.taken_at;
         self.advance(taken_at, odometry);
-        let then_from_now = (self.moment > taken_at).then(|| odometry.inverse() * self.odometry);
+        let then_from_now = self.moved_since(taken_at, odometry);
         let moved = |sighting: &Sighting| match &then_from_now {
             Some(then_from_now) => convert::moved(sighting, then_from_now),
             None => *sighting,
@@ -144,6 +148,28 @@ impl Perception {
             team_mate: sighting.colour == game.team_colour,
             seen_at: taken_at,
         }));
+    }
+
+    /// Corrects the pose with the lines of an image that was [seen](Perception::see), given the
+    /// odometry at the time it was taken.
+    pub fn see_lines(&mut self, seen: &FieldLines, game: &GameState, odometry: &Isometry2<f64>) {
+        let then_from_now = self.moved_since(Timestamp::from_nanos(seen.taken_at), odometry);
+        let now_from_then = then_from_now.map_or(Isometry2::identity(), |moved| moved.inverse());
+        let lines = seen.lines.iter().map(|line| {
+            let ends = [(line.x1, line.y1), (line.x2, line.y2)];
+            LineSighting { ends: ends.map(|(x, y)| now_from_then * Point2::new(x, y)) }
+        });
+        let is_clear = |line: &LineSighting| {
+            line.along().norm() >= LEAST_LINE && line.middle().coords.norm() <= FARTHEST_LINE
+        };
+        if let Some(filter) = &mut self.localisation {
+            filter.correct_by_lines(&game.field(), lines.filter(is_clear));
+        }
+    }
+
+    /// The motion since a time with an odometry, if the filters are propagated past it.
+    fn moved_since(&self, moment: Timestamp, odometry: &Isometry2<f64>) -> Option<Isometry2<f64>> {
+        (self.moment > moment).then(|| odometry.inverse() * self.odometry)
     }
 
     /// Propagates all filters to a time; earlier times are ignored.

@@ -26,13 +26,11 @@ fn main() -> ExitCode {
     println!("| | ball in view | known | wrong | error of distance | of position | kicks |");
     println!("|---|---|---|---|---|---|---|");
     for (name, settings, width) in MATCHES {
-        for seed in seeds {
-            match BallKnowledge::of_match(settings, width, *seed, Duration::from_secs(*seconds)) {
-                Ok(found) => println!("| {name}, seed {seed} {}", row(&found)),
-                Err(error) => {
-                    eprintln!("{name}: {error}");
-                    return ExitCode::FAILURE;
-                }
+        match BallKnowledge::of_matches(settings, width, seeds, Duration::from_secs(*seconds)) {
+            Ok(found) => println!("| {name} {}", row(&found)),
+            Err(error) => {
+                eprintln!("{name}: {error}");
+                return ExitCode::FAILURE;
             }
         }
     }

@@ -232,10 +232,7 @@ fn without_vision_nothing_publishes_the_ball_and_both_checks_say_so() {
     let model = fs::read_to_string(root().join("models/goalie.srm")).expect("the role");
     let lines =
         model.lines().filter(|line| !line.starts_with("START -> Vision") && !line.starts_with("Vision ->"));
-    let model = lines
-        .collect::<Vec<_>>()
-        .join("\n")
-        .replace("Sensorsω || Visionω || ", "Sensorsω || ");
+    let model = lines.collect::<Vec<_>>().join("\n").replace("Sensorsω || Visionω || ", "Sensorsω || ");
     assert!(!model.contains("Vision"), "{model}");
     let role = fs::read_to_string(root().join("config/roles/goalie.xml")).expect("the agents of the role");
     let folder = folder(&[("goalie.xml", &role), ("models/goalie.srm", &model)]);

@@ -147,7 +147,10 @@ fn another_guard_from_a_moment_on_gives_another_future_and_the_same_guard_the_sa
     let without = object(&arguments);
     let difference = &without["difference"];
     assert_eq!((&difference["host"], &difference["topic"]), (&"blue-2".into(), &"soccer/motion".into()));
-    assert_eq!((difference["time"].as_f64(), &difference["first"]["kind"]), (Some(12.6), &"KICK_RIGHT".into()));
+    assert_eq!(
+        (difference["time"].as_f64(), &difference["first"]["kind"]),
+        (Some(12.6), &"KICK_RIGHT".into())
+    );
     assert_ne!(without["recorded"]["events"], without["what_if"]["events"]);
     // a parameter of an activity takes effect, on the robots that are named
     let slow = object(&["--set", "agent.Attacker.MotionController.walk_forward=0.05", "--host", "blue-3"]);

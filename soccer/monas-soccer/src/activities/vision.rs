@@ -121,6 +121,7 @@ fn see(
     {
         let Interpretation { sightings, lines } = interpreter.interpret(images, sensors)?;
         perception.see(&sightings, game, &odometry);
+        perception.see_lines(&lines, game, &odometry);
         return Ok(Some(lines));
     }
     Ok(None)

@@ -1,6 +1,6 @@
-//! Landmarks of a field: posts of the goals and places of the lines.
+//! Landmarks of a field: posts of the goals, places of the lines, and the lines.
 
-use nalgebra::Point2;
+use nalgebra::{Point2, Vector2};
 
 use super::field::{FieldModel, Goal};
 use super::geometry::polar;
@@ -21,6 +21,8 @@ pub enum GoalPost {
 pub enum Landmark {
     /// A post of a goal.
     Post(Goal, GoalPost),
+    /// A post of a goal whose paint does not tell which one it is.
+    PostOfEitherGoal(GoalPost),
     /// The corner of two lines: of the field or of a goal area.
     Corner,
     /// A place where a line ends at another: at the halfway line or at a goal area.
@@ -64,14 +66,10 @@ impl LandmarkPlaces {
         let (end, side) = (field.length / 2.0, field.width / 2.0);
         let (front, beside) = (end - field.area_depth, field.area_width / 2.0);
         match landmark {
-            Landmark::Post(goal, post) => {
-                let [left, right] = field.posts(goal);
-                if post != GoalPost::Right {
-                    all.add(left);
-                }
-                if post != GoalPost::Left {
-                    all.add(right);
-                }
+            Landmark::Post(goal, post) => all.add_posts(field, goal, post),
+            Landmark::PostOfEitherGoal(post) => {
+                all.add_posts(field, Goal::Own, post);
+                all.add_posts(field, Goal::Opponent, post);
             }
             Landmark::Corner => {
                 all.add_mirrored(end, side);
@@ -92,6 +90,16 @@ impl LandmarkPlaces {
         &self.places[..self.count]
     }
 
+    fn add_posts(&mut self, field: &FieldModel, goal: Goal, post: GoalPost) {
+        let [left, right] = field.posts(goal);
+        if post != GoalPost::Right {
+            self.add(left);
+        }
+        if post != GoalPost::Left {
+            self.add(right);
+        }
+    }
+
     fn add(&mut self, place: Point2<f64>) {
         self.places[self.count] = place;
         self.count += 1;
@@ -102,6 +110,45 @@ impl LandmarkPlaces {
             self.add(Point2::new(x, y));
         }
     }
+}
+
+/// A straight part of a line, seen in the robot's frame or known in the field's.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct LineSighting {
+    /// Its ends, metres.
+    pub ends: [Point2<f64>; 2],
+}
+
+impl LineSighting {
+    /// Its middle.
+    pub fn middle(&self) -> Point2<f64> {
+        nalgebra::center(&self.ends[0], &self.ends[1])
+    }
+
+    /// From its first end to its second.
+    pub fn along(&self) -> Vector2<f64> {
+        self.ends[1] - self.ends[0]
+    }
+}
+
+/// The straight lines of a field.
+pub fn field_lines(field: &FieldModel) -> [LineSighting; 11] {
+    let (end, side) = (field.length / 2.0, field.width / 2.0);
+    let (front, beside) = (end - field.area_depth, field.area_width / 2.0);
+    let line = |x1, y1, x2, y2| LineSighting { ends: [Point2::new(x1, y1), Point2::new(x2, y2)] };
+    [
+        line(-end, side, end, side),
+        line(-end, -side, end, -side),
+        line(-end, -side, -end, side),
+        line(end, -side, end, side),
+        line(0.0, -side, 0.0, side),
+        line(-front, -beside, -front, beside),
+        line(front, -beside, front, beside),
+        line(-end, beside, -front, beside),
+        line(-end, -beside, -front, -beside),
+        line(front, beside, end, beside),
+        line(front, -beside, end, -beside),
+    ]
 }
 
 #[cfg(test)]
@@ -116,6 +163,8 @@ mod tests {
         assert_eq!(count(Landmark::Post(Goal::Opponent, GoalPost::Either)), 2);
         assert_eq!((count(Landmark::Corner), count(Landmark::Junction)), (8, 6));
         assert_eq!(count(Landmark::CentreCircle), 1);
+        assert_eq!(count(Landmark::PostOfEitherGoal(GoalPost::Left)), 2);
+        assert_eq!(count(Landmark::PostOfEitherGoal(GoalPost::Either)), 4);
         let corners = LandmarkPlaces::new(Landmark::Corner, &field);
         assert!(corners.as_slice().contains(&Point2::new(-3.0, 2.0)));
         assert!(corners.as_slice().contains(&Point2::new(2.4, -1.1)));

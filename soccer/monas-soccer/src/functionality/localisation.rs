@@ -8,11 +8,13 @@
 //! becomes a new one (sensor resetting: Lenser, Veloso, ICRA 2000), so that a robot which was
 //! carried away finds itself.
 
+use std::f64::consts::PI;
+
 use nalgebra::{Isometry2, Point2};
 
 use super::field::FieldModel;
 use super::geometry::{angle_of, heading, rotation, wrap};
-use super::landmarks::{GoalPost, Landmark, LandmarkPlaces, LandmarkSighting};
+use super::landmarks::{GoalPost, Landmark, LandmarkPlaces, LandmarkSighting, LineSighting};
 use super::pose_filter::PoseFilter;
 pub use super::pose_filter::{LocalisationModel, PoseEstimate};
 
@@ -23,6 +25,12 @@ pub struct Localisation {
     model: LocalisationModel,
     /// The heaviest first; never empty.
     hypotheses: Vec<PoseHypothesis>,
+    /// Whether posts were seen that do not show their goal: then a pose and the one turned by half
+    /// a turn about the centre of the field explain every image equally well.
+    do_goals_look_alike: bool,
+    /// Poses by odometry alone since the robot last knew its pose: where it may be on the field's
+    /// two equal halves.
+    anchors: Vec<Isometry2<f64>>,
 }
 
 #[derive(Clone, Debug)]
@@ -48,6 +56,8 @@ const NEAR: (f64, f64, f64) = (0.3, 0.15, 0.4);
 const AROUND: f64 = 0.7;
 /// Confidence below which any two landmarks give a hypothesis, not only both posts of a goal.
 const LOST: f64 = 0.5;
+/// Confidence from which the robot knows in which half of the field it is.
+const KNOWN: f64 = 0.8;
 
 impl Localisation {
     /// Hypotheses of equal weight; at the centre, with no certainty, if there are none.
@@ -62,13 +72,15 @@ impl Localisation {
         let mut hypotheses = Vec::with_capacity(MOST.max(starts.len()) + 1);
         hypotheses
             .extend(starts.iter().map(|start| PoseHypothesis { filter: PoseFilter::new(start), weight }));
-        Localisation { model, hypotheses }
+        let anchors = starts.iter().map(|start| start.field_from_robot).collect();
+        Localisation { model, hypotheses, do_goals_look_alike: false, anchors }
     }
 
     /// Moves the robot to `old_from_new`, its new pose in its old frame.
     pub fn advance(&mut self, old_from_new: &Isometry2<f64>) {
         let model = &self.model;
         self.hypotheses.iter_mut().for_each(|it| it.filter.advance(model, old_from_new));
+        self.anchors.iter_mut().for_each(|anchor| *anchor *= old_from_new);
     }
 
     /// Adds uncertainty of `place` metres and `turn` radians (standard deviations), as after a
@@ -80,6 +92,7 @@ impl Localisation {
     /// Corrects the pose with the landmarks of one image.
     pub fn correct(&mut self, field: &FieldModel, seen: &[LandmarkSighting]) {
         for sighting in seen {
+            self.do_goals_look_alike |= matches!(sighting.landmark, Landmark::PostOfEitherGoal(_));
             for hypothesis in &mut self.hypotheses {
                 let likelihood = hypothesis.filter.correct(&self.model, field, sighting);
                 hypothesis.weight *= likelihood.max(OUTLIER);
@@ -99,6 +112,19 @@ impl Localisation {
         self.prune();
     }
 
+    /// Corrects the pose with the lines of one image.
+    pub fn correct_by_lines(&mut self, field: &FieldModel, seen: impl IntoIterator<Item = LineSighting>) {
+        for line in seen {
+            for hypothesis in &mut self.hypotheses {
+                let likelihood = hypothesis.filter.correct_by_line(&self.model, field, &line);
+                hypothesis.weight *= likelihood.max(OUTLIER);
+            }
+            self.normalise();
+        }
+        self.merge();
+        self.prune();
+    }
+
     /// The most likely pose of the robot in the field.
     pub fn field_from_robot(&self) -> Isometry2<f64> {
         self.hypotheses.first().map_or(Isometry2::identity(), |best| *best.filter.field_from_robot())
@@ -110,6 +136,15 @@ impl Localisation {
         self.hypotheses.first().map_or(0.0, |best| {
             best.weight * best.filter.trust() / (1.0 + best.filter.place_variance() / 0.25)
         })
+    }
+
+    /// How far a pose is from the nearest anchor: the sum of metres and radians.
+    fn way_to(&self, pose: &Isometry2<f64>) -> f64 {
+        let way = |known: &Isometry2<f64>| {
+            let place = known.translation.vector - pose.translation.vector;
+            place.norm() + wrap(heading(known) - heading(pose)).abs()
+        };
+        self.anchors.iter().map(way).fold(f64::INFINITY, f64::min)
     }
 
     fn normalise(&mut self) {
@@ -143,6 +178,11 @@ impl Localisation {
         let heavy = self.hypotheses.iter().take_while(|it| it.weight >= LEAST_WEIGHT).count();
         self.hypotheses.truncate(heavy.clamp(1, MOST));
         self.normalise();
+        if self.confidence() >= KNOWN {
+            let pose = self.field_from_robot();
+            self.anchors.clear();
+            self.anchors.push(pose);
+        }
     }
 
     /// Adds the poses from which two landmarks are seen where they are.
@@ -177,8 +217,9 @@ impl Localisation {
             place.x.abs() < field.length / 2.0 + AROUND && place.y.abs() < field.width / 2.0 + AROUND;
         let near = (NEAR.0 + NEAR.1 * distance, NEAR.2);
         let is_known = self.hypotheses.iter().any(|it| is_near(&it.filter, &pose, near));
+        let is_turned = self.do_goals_look_alike && self.way_to(&turned(&pose)) < self.way_to(&pose);
         // One more than the most has room: `prune` drops the lightest.
-        if !is_on_carpet || is_known || self.hypotheses.len() > MOST {
+        if !is_on_carpet || is_known || is_turned || self.hypotheses.len() > MOST {
             return;
         }
         let start = PoseEstimate {
@@ -190,10 +231,18 @@ impl Localisation {
     }
 }
 
+/// The pose turned by half a turn about the centre of the field.
+fn turned(pose: &Isometry2<f64>) -> Isometry2<f64> {
+    rotation(PI) * pose
+}
+
 fn are_posts_of_one_goal(one: &LandmarkSighting, other: &LandmarkSighting) -> bool {
     match (one.landmark, other.landmark) {
         (Landmark::Post(goal, GoalPost::Left), Landmark::Post(same, GoalPost::Right))
         | (Landmark::Post(goal, GoalPost::Right), Landmark::Post(same, GoalPost::Left)) => goal == same,
+        // Posts of different goals are never as far apart as two of one goal.
+        (Landmark::PostOfEitherGoal(GoalPost::Left), Landmark::PostOfEitherGoal(GoalPost::Right))
+        | (Landmark::PostOfEitherGoal(GoalPost::Right), Landmark::PostOfEitherGoal(GoalPost::Left)) => true,
         _ => false,
     }
 }
@@ -206,8 +255,6 @@ fn is_near(filter: &PoseFilter, pose: &Isometry2<f64>, (place, turn): (f64, f64)
 
 #[cfg(test)]
 mod tests {
-    use std::f64::consts::PI;
-
     use proptest::prelude::*;
 
     use super::*;

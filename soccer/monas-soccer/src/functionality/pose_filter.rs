@@ -9,8 +9,8 @@ use std::f64::consts::PI;
 use nalgebra::{Isometry2, Matrix2, Matrix2x3, Matrix3, Matrix3x2, Point2, Vector2, Vector3};
 
 use super::field::FieldModel;
-use super::geometry::{heading, pose, wrap};
-use super::landmarks::{Landmark, LandmarkPlaces, LandmarkSighting};
+use super::geometry::{angle_of, heading, pose, wrap};
+use super::landmarks::{Landmark, LandmarkPlaces, LandmarkSighting, LineSighting, field_lines};
 
 /// Noise of the robot's measurements.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -49,13 +49,16 @@ impl LocalisationModel {
     /// Standard deviation of the distance of a landmark, metres.
     pub(super) fn distance_deviation(&self, landmark: Landmark, distance: f64) -> f64 {
         match landmark {
-            Landmark::Post(..) => self.distance_noise * distance + 0.02,
-            // A place on the ground at distance d is seen at the elevation atan(h/d).
-            Landmark::Corner | Landmark::Junction | Landmark::CentreCircle => {
-                let height = self.eye_height;
-                self.elevation_noise * (distance * distance + height * height) / height + 0.03
-            }
+            Landmark::Post(..) | Landmark::PostOfEitherGoal(_) => self.distance_noise * distance + 0.02,
+            Landmark::Corner | Landmark::Junction | Landmark::CentreCircle => self.ground_deviation(distance),
         }
+    }
+
+    /// Standard deviation of the distance of a place on the ground, metres: at the distance d it is
+    /// seen at the elevation atan(h/d).
+    fn ground_deviation(&self, distance: f64) -> f64 {
+        let height = self.eye_height;
+        self.elevation_noise * (distance * distance + height * height) / height + 0.03
     }
 }
 
@@ -85,6 +88,8 @@ pub(super) struct PoseFilter {
 const GATE: f64 = 13.8;
 /// The same distance by which the best place of a line must match better than the next.
 const AMBIGUITY: f64 = 4.0;
+/// How far a line may be seen beyond the ends of the line of the field, metres.
+const BEYOND: f64 = 0.3;
 /// Number of consecutive mismatches after which the filter increases its uncertainty.
 const DOUBT: u32 = 8;
 /// Unmodelled change between two sightings, metres and radians; prevents overconfidence.
@@ -150,30 +155,39 @@ impl PoseFilter {
     ) -> f64 {
         self.disturb(UNMODELLED.0, UNMODELLED.1);
         let places = LandmarkPlaces::new(seen.landmark, field);
-        let (mut best, mut next): (Option<LandmarkMatch>, f64) = (None, f64::INFINITY);
-        for place in places.as_slice() {
-            let Some(fit) = self.fit(model, *place, seen) else { continue };
-            match &best {
-                Some(known) if known.mismatch <= fit.mismatch => next = next.min(fit.mismatch),
-                _ => {
-                    next = next.min(best.map_or(f64::INFINITY, |known| known.mismatch));
-                    best = Some(fit);
-                }
-            }
-        }
-        let is_line = !matches!(seen.landmark, Landmark::Post(..));
-        match best {
-            Some(fit) if fit.mismatch <= GATE => {
-                if !(is_line && next < fit.mismatch + AMBIGUITY) {
+        let matches = places.as_slice().iter().filter_map(|place| self.fit(model, *place, seen));
+        let must_be_unique = !matches!(seen.landmark, Landmark::Post(..));
+        match best_match(matches) {
+            Some((fit, next)) => {
+                if !must_be_unique || next >= fit.mismatch + AMBIGUITY {
                     self.apply(&fit);
                 }
                 fit.likelihood
             }
-            _ => {
+            None => {
                 self.misfit();
                 0.0
             }
         }
+    }
+
+    /// Corrects the pose with a line or a short part of the centre circle, and returns how likely it
+    /// was. One that matches no line of the field, or two of them, does not change the pose.
+    pub(super) fn correct_by_line(
+        &mut self,
+        model: &LocalisationModel,
+        field: &FieldModel,
+        seen: &LineSighting,
+    ) -> f64 {
+        self.disturb(UNMODELLED.0, UNMODELLED.1);
+        let circle = self.tangent(field.circle_radius, seen);
+        let lines = field_lines(field).into_iter().chain(circle);
+        let matches = lines.filter_map(|line| self.fit_line(model, &line, seen));
+        let Some((fit, next)) = best_match(matches) else { return 0.0 };
+        if next >= fit.mismatch + AMBIGUITY {
+            self.apply(&fit);
+        }
+        fit.likelihood
     }
 
     /// The match of a sighting with a landmark; none if the robot would stand on it.
@@ -199,6 +213,57 @@ impl PoseFilter {
         let far = model.distance_deviation(seen.landmark, distance);
         let aside = model.bearing_noise;
         let noise = Matrix2::new(far * far, 0.0, 0.0, aside * aside);
+        self.matching(innovation, jacobian, noise)
+    }
+
+    /// The tangent of the centre circle where a line is seen, as long as a part of the circle that
+    /// looks straight.
+    fn tangent(&self, radius: f64, seen: &LineSighting) -> Option<LineSighting> {
+        let out = self.field_from_robot.transform_point(&seen.middle()).coords.try_normalize(1e-6)?;
+        let (middle, half) = (Point2::from(out * radius), Vector2::new(-out.y, out.x) * (radius / 2.0));
+        Some(LineSighting { ends: [middle - half, middle + half] })
+    }
+
+    /// The match of a line that is seen with a line of the field: of the distance of its middle
+    /// from that line, and of the direction. None if it would extend beyond the ends.
+    fn fit_line(
+        &self,
+        model: &LocalisationModel,
+        line: &LineSighting,
+        seen: &LineSighting,
+    ) -> Option<LandmarkMatch> {
+        let (middle, along) = (seen.middle().coords, seen.along());
+        let (distance, length) = (middle.norm(), along.norm());
+        let at = self.field_from_robot.transform_point(&seen.middle());
+        let direction = line.along().normalize();
+        let normal = Vector2::new(-direction.y, direction.x);
+        let place = direction.dot(&(at - line.ends[0]));
+        let half = length / 2.0 - BEYOND;
+        if place < half || place > line.along().norm() - half {
+            return None;
+        }
+        // The direction of a line is known up to half a turn.
+        let turn = angle_of(&direction) - angle_of(&along) - heading(&self.field_from_robot);
+        let innovation = Vector2::new(normal.dot(&(line.ends[0] - at)), wrap(2.0 * turn) / 2.0);
+        let ahead = self.field_from_robot.transform_vector(&middle);
+        #[rustfmt::skip]
+        let jacobian = Matrix2x3::new(
+            normal.x, normal.y, normal.dot(&Vector2::new(-ahead.y, ahead.x)),
+            0.0,      0.0,      1.0,
+        );
+        let ray = ahead / distance.max(1e-9);
+        let (far, aside) = (model.ground_deviation(distance), model.bearing_noise * distance);
+        let off = libm::hypot(far * normal.dot(&ray), aside * normal.perp(&ray));
+        let turned = model.bearing_noise + 2.0 * off / length.max(1e-9);
+        self.matching(innovation, jacobian, Matrix2::new(off * off, 0.0, 0.0, turned * turned))
+    }
+
+    fn matching(
+        &self,
+        innovation: Vector2<f64>,
+        jacobian: Matrix2x3<f64>,
+        noise: Matrix2<f64>,
+    ) -> Option<LandmarkMatch> {
         let spread = jacobian * self.covariance * jacobian.transpose() + noise;
         let inverse = spread.try_inverse()?;
         let mismatch = (innovation.transpose() * inverse * innovation).x;
@@ -225,6 +290,21 @@ impl PoseFilter {
             self.disturb(0.5, 0.5);
         }
     }
+}
+
+/// The best of the matches within the gate, and the mismatch of the second best.
+fn best_match(matches: impl Iterator<Item = LandmarkMatch>) -> Option<(LandmarkMatch, f64)> {
+    let (mut best, mut next): (Option<LandmarkMatch>, f64) = (None, f64::INFINITY);
+    for fit in matches {
+        match &best {
+            Some(known) if known.mismatch <= fit.mismatch => next = next.min(fit.mismatch),
+            _ => {
+                next = next.min(best.map_or(f64::INFINITY, |known| known.mismatch));
+                best = Some(fit);
+            }
+        }
+    }
+    best.filter(|fit| fit.mismatch <= GATE).map(|fit| (fit, next))
 }
 
 /// The match of a sighting with a landmark, and the resulting correction.
