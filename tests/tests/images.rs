@@ -160,9 +160,13 @@ fn a_robot_that_sees_images_finds_and_moves_the_ball() {
             Box::new(WrappedBody::new(body, blind, 1))
         });
         let mut running = plan.start(MatchOptions { seed: 1, ..MatchOptions::default() }).unwrap();
-        // READY ends when the blind robots have turned once around.
-        running.advance(Duration::from_secs(42)).unwrap();
-        running.pitch().with_world(|world| world.ball().position.norm())
+        // READY ends when the blind robots have turned once around. After a goal the ball is back in
+        // the centre.
+        let distances = (0..42).map(|second| {
+            running.advance(Duration::from_secs(second)).unwrap();
+            running.pitch().with_world(|world| world.ball().position.norm())
+        });
+        distances.fold(0.0, f64::max)
     };
     assert!(displaced(Eyes::Field) > 0.3, "the ball is where it was");
     assert!(displaced(Eyes::Nao) > 0.3, "the ball is where it was, with a Nao");

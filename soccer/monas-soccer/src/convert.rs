@@ -358,23 +358,22 @@ mod tests {
     }
 
     #[test]
-    fn a_white_post_is_of_neither_goal() {
-        let goal = |seen: Colour, attacked: Colour| {
+    fn a_post_is_of_the_goal_of_its_colour_and_a_white_one_of_either() {
+        let post = |seen: Colour, attacked: Colour| {
             let game = GameState { goal_to_attack: attacked.into(), ..GameState::default() };
             let kind = ObjectKind::LeftPost.into();
             let sighting = Sighting { kind, colour: seen.into(), distance: 2.0, ..Sighting::default() };
-            landmark(&sighting, &game).map(|seen| match seen.landmark {
-                Landmark::Post(goal, _) => goal,
-                other => panic!("{other:?} is no post"),
-            })
+            landmark(&sighting, &game).map(|seen| seen.landmark)
         };
-        assert_eq!(goal(Colour::Yellow, Colour::Yellow), Some(Goal::Opponent));
-        assert_eq!(goal(Colour::Blue, Colour::Yellow), Some(Goal::Own));
-        assert_eq!(goal(Colour::Yellow, Colour::Blue), Some(Goal::Own));
+        let left = |goal| Some(Landmark::Post(goal, GoalPost::Left));
+        assert_eq!(post(Colour::Yellow, Colour::Yellow), left(Goal::Opponent));
+        assert_eq!(post(Colour::Blue, Colour::Yellow), left(Goal::Own));
+        assert_eq!(post(Colour::Yellow, Colour::Blue), left(Goal::Own));
+        let either = Some(Landmark::PostOfEitherGoal(GoalPost::Left));
         for attacked in [Colour::Yellow, Colour::Blue, Colour::White, Colour::NoColour] {
-            assert_eq!(goal(Colour::White, attacked), None, "attacked: {attacked:?}");
+            assert_eq!(post(Colour::White, attacked), either, "attacked: {attacked:?}");
         }
-        assert_eq!(goal(Colour::Yellow, Colour::NoColour), None, "the sides are not known");
+        assert_eq!(post(Colour::Yellow, Colour::NoColour), None, "the sides are not known");
     }
 
     #[test]

@@ -349,6 +349,60 @@ mod tests {
         assert_eq!(unsure.field_from_robot(), pose(-2.0, 0.0, PI), "either corner of the area fits");
     }
 
+    fn line(truth: &Isometry2<f64>, from: (f64, f64), to: (f64, f64)) -> LineSighting {
+        LineSighting { ends: [from, to].map(|(x, y)| truth.inverse_transform_point(&Point2::new(x, y))) }
+    }
+
+    #[test]
+    fn lines_and_the_circle_correct_the_pose_unless_they_are_ambiguous() {
+        let truth = pose(-1.3, 0.6, 0.2);
+        let mut filter = localisation(&[at(-1.4, 0.75, 0.1, 0.15)]);
+        // The halfway line, a part of the circle, and the touch line.
+        let seen = [
+            line(&truth, (0.0, 1.1), (0.0, 0.7)),
+            line(&truth, (-0.58, -0.15), (-0.58, 0.15)),
+            line(&truth, (-0.6, 2.0), (0.2, 2.0)),
+        ];
+        for _ in 0..40 {
+            filter.correct_by_lines(&FIELD, seen);
+        }
+        assert!(error(&filter, &truth) < 0.06, "{:?}", filter.field_from_robot());
+        let mut unsure = localisation(&[at(1.8, 0.0, 0.0, 0.6)]);
+        unsure.correct_by_lines(&FIELD, [line(&pose(1.5, 0.0, 0.0), (2.4, -0.3), (2.4, 0.3))]);
+        assert_eq!(unsure.field_from_robot(), pose(1.8, 0.0, 0.0), "the goal line fits, and the area");
+        let mut sure = localisation(&[at(1.0, 0.0, 0.0, 0.05)]);
+        sure.correct_by_lines(&FIELD, [line(&pose(1.0, 0.0, 0.0), (2.0, -0.3), (1.8, 0.4))]);
+        assert_eq!(sure.field_from_robot(), pose(1.0, 0.0, 0.0), "no line is there");
+    }
+
+    #[test]
+    fn goals_that_look_alike_do_not_turn_the_field_around() {
+        let seen = |truth: &Isometry2<f64>| {
+            goal(truth, Goal::Opponent).map(|seen| LandmarkSighting {
+                landmark: match seen.landmark {
+                    Landmark::Post(_, post) => Landmark::PostOfEitherGoal(post),
+                    other => other,
+                },
+                ..seen
+            })
+        };
+        // Put down in the own half: a pose that fits as well, in the other half, looks at the own goal.
+        let truth = pose(-1.1, 0.5, 0.1);
+        let starts = super::super::placement::Placement::OwnHalf.poses(&FIELD);
+        let mut filter = localisation(&starts);
+        for _ in 0..80 {
+            filter.correct(&FIELD, &seen(&truth));
+        }
+        assert!(error(&filter, &truth) < 0.2, "{:?}", filter.field_from_robot());
+        assert!(filter.confidence() > 0.8, "{}", filter.confidence());
+        // Odometry that is wrong by more than a metre does not change the half.
+        let carried = pose(0.3, -0.4, -0.2);
+        for _ in 0..80 {
+            filter.correct(&FIELD, &seen(&carried));
+        }
+        assert!(error(&filter, &carried) < 0.2, "{:?}", filter.field_from_robot());
+    }
+
     #[test]
     fn a_post_out_of_place_changes_nothing() {
         let truth = pose(1.0, 0.0, 0.0);
