@@ -376,18 +376,18 @@ async function tape(browser) {
   assert.ok(events > 0, 'the timeline has events');
   await page.getByRole('button', { name: 'event ›' }).click();
   await until(page, 'the kick-off', () => /kick-off/.test(document.querySelector('.latest')?.textContent ?? ''));
-  assert.equal(await time(), 6);
+  assert.equal(await time(), 10.9);
   // playing
   await page.getByLabel('Speed', { exact: true }).selectOption('16');
   await page.locator('.play').click();
   await until(page, 'the tape is played to its end', () => document.querySelector('.play')?.textContent === 'Play' && document.querySelector('.time')?.textContent?.startsWith('1:00'));
-  await seek(8.5);
+  await seek(13.3);
   await page.locator('.robots button', { hasText: 'blue-2' }).click();
   await page.waitForTimeout(300);
   // the conditions of the kick, with the messages that they read
-  await until(page, 'what the conditions read', () => /Ball\.distance = 0\.16/.test(document.querySelector('.reads')?.textContent ?? ''));
+  await until(page, 'what the conditions read', () => /Ball\.distance = 0\.17/.test(document.querySelector('.reads')?.textContent ?? ''));
   assert.match(await textOf(page, '.reads'), /near = 0\.25[\s\S]*constant/);
-  assert.match(await page.locator('.reads li').first().getAttribute('title'), /number \d+ on soccer\/ball by Attacker/);
+  assert.match(await page.locator('.reads li', { hasText: 'Ball.distance' }).first().getAttribute('title'), /number \d+ on soccer\/ball by Attacker/);
   await shot(page, 'tape');
   // what the chart knew at this moment: the kick has begun, with the ball at the right foot
   await page.getByRole('button', { name: 'Values' }).click();
@@ -397,7 +397,7 @@ async function tape(browser) {
   });
   const ball = page.locator('[aria-label=Blackboards] details', { hasText: 'soccer/ball' }).first();
   await ball.evaluate((details) => (details.open = true));
-  assert.match(await ball.innerText(), /soccer\/ball\s+0:0\d\.\d\s+.*distance 0\.1/);
+  assert.match(await ball.innerText(), /soccer\/ball\s+0:1\d\.\d\s+.*distance 0\.1/);
   const values = await textOf(page, '[aria-label=Timers]');
   assert.match(values, /decision_timeout/);
   await seek(20);
@@ -405,7 +405,7 @@ async function tape(browser) {
     const now = document.querySelector('[aria-label=Timers]')?.textContent;
     return now && now !== before;
   }, values);
-  await seek(8.5);
+  await seek(13.3);
   await page.getByRole('button', { name: 'Latest decisions' }).click();
   await whyNot(page, seek, time);
   assert.deepEqual(faults, []);
@@ -441,7 +441,7 @@ async function besides(browser) {
   const folder = mkdtempSync(join(tmpdir(), 'monas-tapes-'));
   const [file, other] = ['match.mcap', 'other.mcap'].map((name) => join(folder, name));
   execFileSync(PROGRAM, ['run', MATCH, '--seed', '1', '--for', '20s', '--no-control', '--record', file], { stdio: 'ignore' });
-  const guard = ['--at', '7.75s', '--guard', 'CONDITION -> kickBall=[false]', '--host', 'blue-2'];
+  const guard = ['--at', '12.55s', '--guard', 'CONDITION -> kickBall=[false]', '--host', 'blue-2'];
   execFileSync(PROGRAM, ['tape', 'what-if', file, ...guard, '-o', other], { stdio: 'ignore' });
   const studio = start(PROGRAM, ['studio', file, '--beside', other]);
   const { page, faults } = await open(browser, await studio.url);
@@ -456,14 +456,14 @@ async function besides(browser) {
     }, to);
     await page.waitForTimeout(500);
   };
-  await seek(7.5);
-  assert.match(await textOf(page, '.difference'), /First difference at 0:07\.8: soccer\/motion number \d+ by Attacker of blue-2/);
+  await seek(12.3);
+  assert.match(await textOf(page, '.difference'), /First difference at 0:12\.6: soccer\/motion number \d+ by Attacker of blue-2/);
   await until(page, 'robots on both', () => document.querySelectorAll('.body').length === 12);
   assert.equal(await places(0), await places(1));
   assert.equal(await page.locator('.differs').count(), 0);
   await page.getByRole('button', { name: 'go there' }).click();
-  await until(page, 'the difference', () => document.querySelector('.time')?.textContent === '0:07.8');
-  await seek(8.5);
+  await until(page, 'the difference', () => document.querySelector('.time')?.textContent === '0:12.6');
+  await seek(13.3);
   const row = page.locator('tr.choice', { hasText: 'blue-2' });
   await row.getByText('≠').waitFor();
   await row.click();
@@ -471,9 +471,9 @@ async function besides(browser) {
   assert.match(await list(0), /kickBall|Kick/);
   assert.doesNotMatch((await list(1)).split('\n')[0], /Kick/);
   await shot(page, 'beside');
-  await seek(15);
+  await seek(18);
   assert.notEqual(await places(0), await places(1));
-  await seek(7.5);
+  await seek(12.3);
   assert.equal(await places(0), await places(1), 'the same when reached backwards');
   assert.deepEqual(faults, []);
   await page.close();
@@ -482,28 +482,28 @@ async function besides(browser) {
 
 /** A transition that does not fire, its values, the messages behind them, and its firings. */
 async function whyNot(page, seek, time) {
-  await seek(8.3);
+  await seek(13.1);
   await page.locator('.robots button', { hasText: 'blue-2' }).click();
   const arrow = page.locator('[data-choice][aria-label*="takeAction/WalkTowardsBall [Ball.distance > near"]').first();
   await arrow.focus();
   await page.keyboard.press('Enter');
   await until(page, 'what fired instead', () => /instead of it fired .*kickBall/.test(document.querySelector('.why .reason')?.textContent ?? ''));
   assert.match(await textOf(page, '.atoms li.false'), /✗\s+Ball\.distance > near/);
-  assert.match(await textOf(page, '.atoms li.false .read'), /Ball\.distance = 0\.1631/);
+  assert.match(await textOf(page, '.atoms li.false .read'), /Ball\.distance = 0\.1748/);
   assert.equal(await page.locator('.atoms li.true').count(), 2);
   await page.locator('.why details summary').first().click();
   assert.match(await textOf(page, '.why .chain'), /soccer\/ball[\s\S]*by Vision of Attacker on blue-2[\s\S]*body\/sensors[\s\S]*comes from outside/);
   await shot(page, 'why-not');
   await page.getByRole('button', { name: 'firing ›' }).click();
   await until(page, 'that it fired', () => document.querySelector('.why .now')?.textContent === 'Fired');
-  assert.ok((await time()) > 12, 'its next firing');
+  assert.ok((await time()) > 14, 'its next firing');
   await page.locator('h2').first().click();
   await page.keyboard.press('<');
-  await until(page, 'its last firing', () => (document.querySelector('.time')?.textContent ?? '').startsWith('0:06'));
+  await until(page, 'its last firing', () => (document.querySelector('.time')?.textContent ?? '').startsWith('0:1'));
   // events of one kind
   await page.getByLabel('Kind of events').selectOption('kick-off');
   await page.getByRole('button', { name: '‹ event' }).click();
-  await until(page, 'the kick-off before', () => /0:06\.0/.test(document.querySelector('.time')?.textContent ?? ''));
+  await until(page, 'the kick-off before', () => /0:10\.9/.test(document.querySelector('.time')?.textContent ?? ''));
   await page.locator('.why button', { hasText: 'back to now' }).click();
 }
 
@@ -648,7 +648,7 @@ async function cameras(browser) {
   const images = fileURLToPath(new URL('../../../../config/match_images.xml', import.meta.url));
   // play begins at once, with which robots begin to look
   const rules = ['initial', 'ready', 'set'].flatMap((phase) => ['--set', `simulator.rules.${phase}_duration=0`]);
-  execFileSync(PROGRAM, ['run', images, ...rules, '--for', '500ms', '--no-control', '--record', tape], { stdio: 'ignore' });
+  execFileSync(PROGRAM, ['run', images, ...rules, '--for', '1s', '--no-control', '--record', tape], { stdio: 'ignore' });
   const studio = start(PROGRAM, ['studio', tape]);
   try {
     const { page, faults } = await open(browser, await studio.url);
