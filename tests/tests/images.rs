@@ -160,8 +160,8 @@ fn a_robot_that_sees_images_finds_and_moves_the_ball() {
             Box::new(WrappedBody::new(body, blind, 1))
         });
         let mut running = plan.start(MatchOptions { seed: 1, ..MatchOptions::default() }).unwrap();
-        // READY ends when the blind robots have turned once around. After a goal the ball is back in
-        // the centre.
+        // READY ends when the blind robots have turned once around. After a goal the ball is back
+        // in the centre.
         let distances = (0..42).map(|second| {
             running.advance(Duration::from_secs(second)).unwrap();
             running.pitch().with_world(|world| world.ball().position.norm())

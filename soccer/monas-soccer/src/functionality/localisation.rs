@@ -6,7 +6,8 @@
 //! multiplies the weight of each hypothesis by its likelihood, of which a small part is left to
 //! outliers. Two landmarks in one image give a pose of their own; if no hypothesis is near it, it
 //! becomes a new one (sensor resetting: Lenser, Veloso, ICRA 2000), so that a robot which was
-//! carried away finds itself.
+//! carried away finds itself. Where the goals look alike, the side on which the robot last knew its
+//! pose decides between that pose and the one turned by half a turn.
 
 use std::f64::consts::PI;
 
@@ -386,7 +387,7 @@ mod tests {
                 ..seen
             })
         };
-        // Put down in the own half: a pose that fits as well, in the other half, looks at the own goal.
+        // Put down in the own half. A pose in the other half fits as well.
         let truth = pose(-1.1, 0.5, 0.1);
         let starts = super::super::placement::Placement::OwnHalf.poses(&FIELD);
         let mut filter = localisation(&starts);

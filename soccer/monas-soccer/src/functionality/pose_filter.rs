@@ -171,8 +171,8 @@ impl PoseFilter {
         }
     }
 
-    /// Corrects the pose with a line or a short part of the centre circle, and returns how likely it
-    /// was. One that matches no line of the field, or two of them, does not change the pose.
+    /// Corrects the pose with a line or a short part of the centre circle, and returns how likely
+    /// it was. One that matches no line of the field, or two of them, does not change the pose.
     pub(super) fn correct_by_line(
         &mut self,
         model: &LocalisationModel,
