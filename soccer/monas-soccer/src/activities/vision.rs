@@ -11,8 +11,8 @@ use crate::image_interpreter::{ImageInterpreter, Interpretation};
 use crate::perception::{Perception, PerceptionModel};
 use crate::{FieldLines, GameState, convert, topics};
 
-/// Filters what the body sees: the ball with its velocity, the robot's pose from goal posts, the
-/// other robots.
+/// Filters what the body sees: the ball with its velocity, the robot's pose from goal posts and
+/// lines, the other robots.
 ///
 /// It reads finished sightings, or images from a body that delivers these. An image is interpreted
 /// with the camera pose from the head joints and the torso's inclination at the time it was taken,
@@ -21,8 +21,8 @@ use crate::{FieldLines, GameState, convert, topics};
 ///
 /// Sightings are related to the odometry at the time of the image, which Sensors keeps, and
 /// propagated to the time of publication. A ball or a robot counts once two of a few images show
-/// it, since images show things that are not there. A placement by the referee resets the pose and
-/// discards earlier sightings.
+/// it, since images show things that are not there. After a placement by hand every pose that the
+/// rules allow is possible, and earlier sightings are discarded.
 ///
 /// Parameters `memory` (s): how long a ball counts as found after it was last seen;
 /// `rolling_deceleration` (m/s²) of the ball; `least_speed` (m/s) and `reach` (m): least speed, and

@@ -241,7 +241,7 @@ fn are_posts_of_one_goal(one: &LandmarkSighting, other: &LandmarkSighting) -> bo
     match (one.landmark, other.landmark) {
         (Landmark::Post(goal, GoalPost::Left), Landmark::Post(same, GoalPost::Right))
         | (Landmark::Post(goal, GoalPost::Right), Landmark::Post(same, GoalPost::Left)) => goal == same,
-        // Posts of different goals are never as far apart as two of one goal.
+        // Posts of different goals are farther apart: no place fits them.
         (Landmark::PostOfEitherGoal(GoalPost::Left), Landmark::PostOfEitherGoal(GoalPost::Right))
         | (Landmark::PostOfEitherGoal(GoalPost::Right), Landmark::PostOfEitherGoal(GoalPost::Left)) => true,
         _ => false,
@@ -374,6 +374,10 @@ mod tests {
         let mut sure = localisation(&[at(1.0, 0.0, 0.0, 0.05)]);
         sure.correct_by_lines(&FIELD, [line(&pose(1.0, 0.0, 0.0), (2.0, -0.3), (1.8, 0.4))]);
         assert_eq!(sure.field_from_robot(), pose(1.0, 0.0, 0.0), "no line is there");
+        let without_circle = FieldModel { circle_radius: 0.0, ..FIELD };
+        let mut askew = localisation(&[at(1.0, 0.0, 0.0, 0.1)]);
+        askew.correct_by_lines(&without_circle, [line(&pose(1.1, 0.0, 0.0), (2.4, -0.3), (2.4, 0.3))]);
+        assert!(askew.field_from_robot().translation.x > 1.02, "a field without a circle has lines");
     }
 
     #[test]
@@ -396,12 +400,16 @@ mod tests {
         }
         assert!(error(&filter, &truth) < 0.2, "{:?}", filter.field_from_robot());
         assert!(filter.confidence() > 0.8, "{}", filter.confidence());
-        // Odometry that is wrong by more than a metre does not change the half.
-        let carried = pose(0.3, -0.4, -0.2);
-        for _ in 0..80 {
+        // Carried to a pose that is nearer to the last one than its twin.
+        let carried = pose(0.2, 0.9, 0.4);
+        let mut filter = localisation(&[at(1.0, -0.8, -0.4, 0.05)]);
+        for _ in 0..3 {
             filter.correct(&FIELD, &seen(&carried));
         }
-        assert!(error(&filter, &carried) < 0.2, "{:?}", filter.field_from_robot());
+        assert!(error(&filter, &carried) < 0.1, "{:?}", filter.field_from_robot());
+        let twin = turned(&carried);
+        let is_twin = |it: &PoseHypothesis| is_near(&it.filter, &twin, SAME);
+        assert!(!filter.hypotheses.iter().any(is_twin), "{:?}", filter.hypotheses);
     }
 
     #[test]

@@ -235,7 +235,8 @@ impl PoseFilter {
         let (middle, along) = (seen.middle().coords, seen.along());
         let (distance, length) = (middle.norm(), along.norm());
         let at = self.field_from_robot.transform_point(&seen.middle());
-        let direction = line.along().normalize();
+        // A league may have no centre circle or no goal area.
+        let direction = line.along().try_normalize(1e-6)?;
         let normal = Vector2::new(-direction.y, direction.x);
         let place = direction.dot(&(at - line.ends[0]));
         let half = length / 2.0 - BEYOND;
