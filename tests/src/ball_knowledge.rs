@@ -17,9 +17,6 @@ const EVERY: Duration = Duration::from_millis(100);
 /// apart.
 const KNOWN_FOR: f64 = 0.15;
 
-/// Samples after which a ball in view has to be known.
-const SETTLED: u32 = 3;
-
 /// The index in the world of blue's first attacker, `blue-2`.
 const WATCHED: usize = 1;
 
@@ -29,8 +26,7 @@ pub const TODAY: [&str; 2] = ["match.objects=today", "simulator.physics.ball_rad
 /// Samples of the estimate of the ball that one robot of a match has, and its play.
 #[derive(Clone, PartialEq, Debug, Default)]
 pub struct BallKnowledge {
-    /// Samples of the robot in play that had the ball in view for 0.3 s, not hidden and at most 3 m
-    /// away: the time of the two images that it takes to know a ball, and of the latency.
+    /// Samples of the robot in play that has the ball in view, not hidden and at most 3 m away.
     pub in_view: usize,
     /// Those in which it knows an image of the last 0.15 s, before the latency of its camera, that
     /// shows the ball at most 25 % from its place.
@@ -43,8 +39,6 @@ pub struct BallKnowledge {
     poses: (usize, f64),
     /// Its kicks that hit the ball.
     pub kicks: u32,
-    /// For how many samples the ball has been in view.
-    views: u32,
 }
 
 impl BallKnowledge {
@@ -91,7 +85,6 @@ impl BallKnowledge {
                 .map_err(|found| found.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"))?;
         let mut running =
             plan.start(MatchOptions { seed, record: None }).map_err(|error| error.to_string())?;
-        self.views = 0;
         let board = running.simulation().and_then(|simulation| simulation.hub("blue-2"));
         let mut board = board.ok_or("no robot blue-2")?.blackboard("compared with the truth");
         while running.now() < length {
@@ -142,11 +135,6 @@ impl BallKnowledge {
             .read(topics::BALL)
             .filter(|ball| ball.found && ball.age < KNOWN_FOR + world.physics().camera_latency);
         if !is_in_view(world, WATCHED) {
-            self.views = 0;
-            return;
-        }
-        self.views += 1;
-        if self.views <= SETTLED {
             return;
         }
         self.in_view += 1;
