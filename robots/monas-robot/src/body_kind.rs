@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::fmt;
 
-use crate::{Anatomy, Disturbances, Error, ErrorKind, FieldColours, Robot, Skill, WrappedBody};
+use crate::{BodyFault, BodyOption, Disturbances, Error, ErrorKind, FieldColours, Robot, Skill, WrappedBody};
 
 /// A kind of body, as [`body_kind!`](crate::body_kind!) registers it at link time.
 #[derive(Clone, Copy)]
@@ -23,6 +23,9 @@ pub struct BodyKind {
     /// What a body with these settings cannot do, or does in another way than the field's own
     /// bodies, which have no limits. It is reported before a run, with the activities concerned.
     pub limits: fn(&BodySettings, Surroundings) -> Vec<BodyLimit>,
+    /// What is wrong with settings whose options are each of their kind: values that do not go
+    /// together, files with wrong contents. A configuration with a fault is refused before a run.
+    pub faults: fn(&BodySettings, Surroundings) -> Vec<BodyFault>,
     /// Opens a body of this kind.
     pub open: OpenBody,
     /// Offers a body of a simulated world at an address through the interface of this kind, for
@@ -77,35 +80,6 @@ pub enum Capability {
     Skill(Skill),
     /// To deliver, or to obey, the messages of a topic with this path.
     Topic(&'static str),
-}
-
-/// An option of a kind of body.
-#[derive(Clone, Copy, Debug)]
-pub struct BodyOption {
-    /// The attribute that configurations use.
-    pub name: &'static str,
-    /// What its values are.
-    pub kind: OptionKind,
-    /// What it means, with its default.
-    pub doc: &'static str,
-}
-
-/// The values of an option.
-#[derive(Clone, Copy, Debug)]
-pub enum OptionKind {
-    /// Any text.
-    Text,
-    /// Letters, digits, `-` and `_`.
-    Name,
-    /// A number.
-    Number,
-    /// `0` or `1`.
-    Flag,
-    /// A file, which a configuration names relative to its own place.
-    File,
-    /// A file with a sequence of poses of the joints of this anatomy, named like other files. It is
-    /// checked with the configuration.
-    Poses(fn() -> Anatomy),
 }
 
 /// Where a body is opened.
@@ -194,6 +168,12 @@ impl BodySettings {
     /// What the body cannot do there, see [`BodyKind::limits`]; nothing if there is no such kind.
     pub fn limits(&self, surroundings: Surroundings) -> Vec<BodyLimit> {
         BodyKind::named(&self.kind).map(|kind| (kind.limits)(self, surroundings)).unwrap_or_default()
+    }
+
+    /// What is wrong with the settings there, see [`BodyKind::faults`]; nothing if there is no such
+    /// kind.
+    pub fn faults(&self, surroundings: Surroundings) -> Vec<BodyFault> {
+        BodyKind::named(&self.kind).map(|kind| (kind.faults)(self, surroundings)).unwrap_or_default()
     }
 
     /// Whether the body has a time of its own, see [`BodyKind::has_own_time`].

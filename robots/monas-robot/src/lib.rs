@@ -42,6 +42,7 @@
 
 mod anatomy;
 mod body_kind;
+mod body_option;
 pub mod conformance;
 mod fall_detector;
 mod joint_targets;
@@ -53,9 +54,10 @@ narukom::include_messages!("monas.robot");
 
 pub use anatomy::{Anatomy, Camera, Joint, Limits};
 pub use body_kind::{
-    BodyKind, BodyLimit, BodyOption, BodySettings, BodySite, CameraOutput, Capability, IMAGE_WIDTHS,
-    OpenBody, OptionKind, Surroundings,
+    BodyKind, BodyLimit, BodySettings, BodySite, CameraOutput, Capability, IMAGE_WIDTHS, OpenBody,
+    Surroundings,
 };
+pub use body_option::{BodyFault, BodyOption, OptionKind};
 pub use fall_detector::FallDetector;
 pub use joint_targets::JointTargets;
 pub use robot::{Error, ErrorKind, Percepts, Robot};

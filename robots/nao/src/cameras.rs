@@ -6,7 +6,7 @@ use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use monas_robot::{Error, Image, Images, ObjectSet};
+use monas_robot::{BodyFault, Error, Image, Images, ObjectSet};
 use narukom::Timestamp;
 
 use crate::anatomy;
@@ -77,12 +77,12 @@ impl CameraPlaces {
 ///
 /// # Errors
 /// The cameras have another one.
-pub(crate) fn check_width(width: Option<u32>) -> Result<(), Error> {
+pub(crate) fn check_width(width: Option<u32>) -> Result<(), BodyFault> {
     match width {
         Some(width) if width as usize != WIDTH => {
             let message =
                 format!("the images of a Nao are {WIDTH} pixels wide, not {width}; remove `image_width`");
-            Err(Error::new(monas_robot::ErrorKind::Configuration, message))
+            Err(BodyFault::new("image_width", message))
         }
         _ => Ok(()),
     }

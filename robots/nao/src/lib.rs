@@ -56,7 +56,9 @@ mod walk;
 use std::path::Path;
 
 use monas_robot::topics::{ANNOUNCEMENT, HEARD, IMAGES, SAID, SIGHTINGS};
-use monas_robot::{BodyKind, BodyLimit, BodySettings, BodySite, CameraOutput, Robot, Surroundings};
+use monas_robot::{
+    BodyFault, BodyKind, BodyLimit, BodySettings, BodySite, CameraOutput, Robot, Surroundings,
+};
 
 pub use anatomy::{NaoJoint, anatomy};
 pub use cameras::CameraPlaces;
@@ -73,6 +75,7 @@ monas_robot::body_kind!(BodyKind {
     options: options::OPTIONS,
     has_own_time: |_| false,
     limits,
+    faults,
     open,
     serve: Some(serve),
     probe,
@@ -80,8 +83,7 @@ monas_robot::body_kind!(BodyKind {
 
 /// What LoLA lacks, for which simulations offer sockets of their own, and cameras that are missing.
 fn limits(settings: &BodySettings, surroundings: Surroundings) -> Vec<BodyLimit> {
-    let lola = settings.address.as_deref().unwrap_or(lola::SOCKET);
-    if surroundings == Surroundings::Match || side_channels::are_offered(Path::new(lola)) {
+    if !has_cameras(settings, surroundings) {
         return Vec::new();
     }
     let mut limits: Vec<BodyLimit> = match settings.vision {
@@ -101,6 +103,22 @@ fn limits(settings: &BodySettings, surroundings: Surroundings) -> Vec<BodyLimit>
         BodyLimit::topic(SAID.path(), "the robot cannot speak to team mates: LoLA has no radio"),
     ]);
     limits
+}
+
+/// Images that the cameras of a robot do not have; those of a simulation have other widths.
+fn faults(settings: &BodySettings, surroundings: Surroundings) -> Vec<BodyFault> {
+    match (settings.vision, has_cameras(settings, surroundings)) {
+        (CameraOutput::Images, true) => {
+            cameras::check_width(settings.image_width).err().into_iter().collect()
+        }
+        _ => Vec::new(),
+    }
+}
+
+/// Whether it sees with cameras of its own, and not what a simulation shows it.
+fn has_cameras(settings: &BodySettings, surroundings: Surroundings) -> bool {
+    let lola = settings.address.as_deref().unwrap_or(lola::SOCKET);
+    surroundings == Surroundings::Own && !side_channels::are_offered(Path::new(lola))
 }
 
 /// Opens a Nao: in a simulated world over its body there, else at a socket.

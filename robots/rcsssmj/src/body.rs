@@ -9,16 +9,11 @@ use crate::control::BoosterControl;
 use crate::effector::Effectors;
 use crate::error::Error;
 use crate::humanoid::{CYCLE, Humanoid};
-use crate::kick::KickParameters;
 use crate::match_rules::{FieldPose, MatchRules};
 use crate::monitor::{Command, Monitor};
 use crate::options::Options;
 use crate::percept::{PlayMode, Side};
-use crate::policy::PolicyWalk;
 use crate::server::Server;
-use crate::sine_parameters::SineParameters;
-use crate::sine_walk::SineWalk;
-use crate::walk::WalkEngine;
 
 /// The usual address of a server for agents.
 pub(crate) const ADDRESS: &str = "127.0.0.1:60000";
@@ -68,11 +63,7 @@ impl Booster {
     /// Connects to the server at an address, or starts one, and sets the game up.
     pub(crate) fn open(address: Option<&str>, options: &Options) -> Result<Booster, Error> {
         let robot = options.robot;
-        let walk = walk(options)?;
-        let kick = match &options.kick {
-            Some(file) => KickParameters::load(file)?,
-            None => KickParameters::own(robot)?,
-        };
+        let (walk, kick) = (options.walk_engine()?, options.kick_parameters()?);
         let lockstep = !options.realtime;
         let is_admitted = address.is_none() && lockstep;
         let (server, monitors, connection) = match address {
@@ -301,19 +292,6 @@ impl Booster {
         }
         self.message.clear();
         if std::mem::take(&mut self.owes_answer) { self.answer() } else { Ok(()) }
-    }
-}
-
-/// The walk that the options name.
-fn walk(options: &Options) -> Result<Box<dyn WalkEngine>, Error> {
-    let robot = options.robot;
-    match (&options.policy, &options.walk) {
-        (Some(_), Some(_)) => {
-            Err(Error::configuration("a robot walks by a `policy` or by a `walk`, not by both"))
-        }
-        (Some(policy), None) => Ok(Box::new(PolicyWalk::load(robot, policy)?)),
-        (None, Some(file)) => Ok(Box::new(SineWalk::new(robot, SineParameters::load(file)?))),
-        (None, None) => Ok(Box::new(SineWalk::new(robot, SineParameters::own(robot)?))),
     }
 }
 

@@ -1,6 +1,6 @@
 //! Errors of the connection to the simulation server.
 
-use monas_robot::ErrorKind as BodyError;
+use monas_robot::{BodyFault, ErrorKind as BodyError};
 
 /// An error of the connection to the server, or of the files that the body needs.
 #[derive(Debug, thiserror::Error)]
@@ -38,6 +38,12 @@ impl Error {
     /// The kind of error.
     pub fn kind(&self) -> ErrorKind {
         self.kind
+    }
+}
+
+impl From<BodyFault> for Error {
+    fn from(fault: BodyFault) -> Error {
+        Error::configuration(fault.message)
     }
 }
 

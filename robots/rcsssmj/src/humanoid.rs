@@ -118,6 +118,9 @@ impl Humanoid {
     /// All robots that can be named; the first one is the default.
     pub const ALL: [&'static Humanoid; 2] = [&T1, &K1];
 
+    /// Their names, in the same order.
+    pub(crate) const NAMES: [&'static str; 2] = [Humanoid::ALL[0].name, Humanoid::ALL[1].name];
+
     /// The robot with a name, such as `K1`.
     pub fn named(name: &str) -> Option<&'static Humanoid> {
         Humanoid::ALL.into_iter().find(|robot| robot.name == name)

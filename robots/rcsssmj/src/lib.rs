@@ -83,6 +83,7 @@ monas_robot::body_kind!(BodyKind {
     options: options::OPTIONS,
     has_own_time,
     limits: |settings, _| limits::limits(settings),
+    faults: |settings, _| options::faults(settings),
     open: |site| Ok(Box::new(open(&site)?) as Box<dyn Robot>),
     serve: None,
     probe,

@@ -17,7 +17,7 @@ use yase::{Diagnostic, Source};
 
 use super::colours;
 use super::element::{Attribute, Element};
-use super::grammar::{self, Grammar, Kind};
+use super::grammar::{self, Grammar};
 use super::layers::Layers;
 use super::links::LinkReader;
 use super::modules;
@@ -102,7 +102,7 @@ pub fn assemble(
     modules::read(&mut reader, elements);
     // Links are read first: activities executed elsewhere are checked against them.
     reader.links(elements);
-    reader.body(elements);
+    reader.body(elements, surroundings);
     reader.agents(elements);
     reader.unpublished(elements);
     reader.limits(elements, surroundings);
@@ -131,16 +131,21 @@ impl AgentReader<'_> {
         }
     }
 
-    fn body(&mut self, elements: &[Element]) {
+    fn body(&mut self, elements: &[Element], surroundings: Surroundings) {
         for element in elements {
             if element.is("agents") {
-                self.body(element.children());
+                self.body(element.children(), surroundings);
             } else if element.is("body") {
                 if self.setup.body.is_some() {
                     let found = element.error("E0329", element.name_span(), "a robot has one body");
                     self.diagnostics.push(found.with_hint("remove one of the two `body`"));
                 }
-                self.setup.body = Some(self.body_settings(element));
+                let before = self.diagnostics.len();
+                let settings = self.body_settings(element);
+                if !self.diagnostics[before..].iter().any(Diagnostic::is_error) {
+                    self.body_faults(element, &settings, surroundings);
+                }
+                self.setup.body = Some(settings);
             }
         }
     }
@@ -153,7 +158,12 @@ impl AgentReader<'_> {
                 Some(given) => given.error("E0328", error.to_string()),
                 None => element.error("E0328", element.name_span(), error.to_string()),
             };
-            self.diagnostics.push(found.with_hint("link the crate of the body: `use its_name as _;`"));
+            let linked = BodyKind::linked();
+            let found = found.with_nearest(&kind, linked.iter().map(|linked| linked.name));
+            self.diagnostics.push(match found.hint {
+                Some(_) => found,
+                None => found.with_hint("link the crate of the body: `use its_name as _;`"),
+            });
         }
         let options = self.body_options(&kind, &values);
         let vision = values.word("vision", &CameraOutput::NAMES).unwrap_or_default();
@@ -242,28 +252,36 @@ impl AgentReader<'_> {
     /// The value of an option, which has to be of its kind; none, with a diagnostic, otherwise.
     fn option_value(&mut self, option: &BodyOption, given: &Attribute) -> Option<String> {
         let value = given.value.trim();
-        let expected = match option.kind {
-            OptionKind::Text => return Some(value.to_owned()),
-            OptionKind::Name if Kind::Name.allows(value) => return Some(value.to_owned()),
-            OptionKind::Number if value.parse().is_ok_and(f64::is_finite) => return Some(value.to_owned()),
-            OptionKind::Flag if grammar::flag(value).is_some() => {
-                return Some(if grammar::flag(value) == Some(true) { "1" } else { "0" }.to_owned());
-            }
-            OptionKind::File => {
-                return self.file(given, option.doc).map(|found| found.to_string_lossy().into_owned());
-            }
+        if let Err(fault) = option.check(value) {
+            let diagnostic = given.error("E0306", fault.message);
+            let diagnostic = diagnostic.with_nearest(value, option.kind.words().iter().copied());
+            self.diagnostics.push(match diagnostic.hint {
+                Some(_) => diagnostic,
+                None => diagnostic.with_hint(option.doc),
+            });
+            return None;
+        }
+        Some(match option.kind {
+            OptionKind::Flag if grammar::flag(value) == Some(true) => "1".to_owned(),
+            OptionKind::Flag => "0".to_owned(),
+            OptionKind::File => self.file(given, option.doc)?.to_string_lossy().into_owned(),
             OptionKind::Poses(anatomy) => {
                 let file = self.file(given, option.doc)?;
                 self.diagnostics.extend(poses::load(&file, &anatomy()).1);
-                return Some(file.to_string_lossy().into_owned());
+                file.to_string_lossy().into_owned()
             }
-            OptionKind::Name => "a name",
-            OptionKind::Number => "a number",
-            OptionKind::Flag => "`0` or `1`",
-        };
-        let message = format!("`{}` is `{value}`, expected {expected}", option.name);
-        self.diagnostics.push(given.error("E0306", message).with_hint(option.doc));
-        None
+            _ => value.to_owned(),
+        })
+    }
+
+    /// Reports what the kind of the body finds wrong with settings that have no other errors.
+    fn body_faults(&mut self, element: &Element, settings: &BodySettings, surroundings: Surroundings) {
+        for fault in settings.faults(surroundings) {
+            self.diagnostics.push(match element.attribute(fault.attribute) {
+                Some(given) => given.error("E0306", fault.message),
+                None => element.error("E0306", element.name_span(), fault.message),
+            });
+        }
     }
 
     fn agents(&mut self, elements: &[Element]) {

@@ -27,6 +27,7 @@ monas_robot::body_kind!(BodyKind {
     options: &[],
     has_own_time: |_| false,
     limits: |_, _| Vec::new(),
+    faults: |_, _| Vec::new(),
     open: |site: BodySite| site.simulated.ok_or_else(nowhere),
     serve: None,
     probe: |_| Ok("it answers in matches".to_owned()),
