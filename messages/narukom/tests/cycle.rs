@@ -194,9 +194,13 @@ fn reads_are_remembered() {
     let robot = hub().blackboard("robot");
     assert_eq!(robot.topics_read(), []);
     robot.read(STATE);
+    let count = robot.read_count();
     robot.signals(SIGNAL).count();
+    robot.read(STATE);
     let read = ["test/state", "test/signal"].map(|path| robot.slot(path).unwrap());
     assert_eq!(robot.topics_read(), read);
+    assert_eq!(robot.read_since(count), read[1..]);
+    assert_eq!((count, robot.read_count()), (1, 2));
     assert!(robot.is_read(read[0]));
     assert!(!robot.is_read(robot.slot("test/data").unwrap()));
 }

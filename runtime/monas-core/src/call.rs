@@ -117,13 +117,45 @@ impl ActivityCall {
 /// Calls `start`.
 pub fn start(activity: &mut dyn Activity, blackboard: &mut Blackboard) -> Result<(), CallFailure> {
     call_slot::calls(ActivityFunction::Start);
-    guarded(|| activity.start(blackboard))
+    reading_declared(activity, blackboard, |activity, blackboard| activity.start(blackboard))
 }
 
 /// Calls `execute`.
 pub fn execute(activity: &mut dyn Activity, blackboard: &mut Blackboard) -> Result<Progress, CallFailure> {
     call_slot::calls(ActivityFunction::Execute);
-    guarded(|| activity.execute(blackboard))
+    reading_declared(activity, blackboard, |activity, blackboard| activity.execute(blackboard))
+}
+
+/// Calls an activity; it fails if it is the first to read a topic on this blackboard and does not
+/// declare it, although it declares topics. Later calls pay one comparison for this.
+fn reading_declared<T>(
+    activity: &mut dyn Activity,
+    blackboard: &mut Blackboard,
+    call: impl FnOnce(&mut dyn Activity, &mut Blackboard) -> Result<T, BoxError>,
+) -> Result<T, CallFailure> {
+    let before = blackboard.read_count();
+    let result = guarded(|| call(activity, blackboard))?;
+    if blackboard.read_count() != before {
+        check_read_since(before, activity, blackboard)?;
+    }
+    Ok(result)
+}
+
+#[cold]
+fn check_read_since(
+    count: usize,
+    activity: &dyn Activity,
+    blackboard: &Blackboard,
+) -> Result<(), CallFailure> {
+    let topics = caught(|| activity.topics())?;
+    let read = blackboard.read_since(count);
+    let mut paths = read.iter().filter_map(|topic| Some(blackboard.hub().declaration(*topic)?.path()));
+    match paths.find(|path| topics.is_declared() && !topics.read_paths().contains(path)) {
+        Some(path) => Err(CallFailure::Error(format!(
+            "it reads `{path}`, which it does not declare: add the topic to its `topics`"
+        ))),
+        None => Ok(()),
+    }
 }
 
 /// Calls `stop`.

@@ -91,6 +91,18 @@ impl Blackboard {
         slots
     }
 
+    /// The number of topics that messages are delivered of since they were first read, each host's
+    /// counted by itself.
+    #[inline]
+    pub fn read_count(&self) -> usize {
+        self.attached.borrow().len()
+    }
+
+    /// The topics that were first read after this [count](Blackboard::read_count), in order.
+    pub fn read_since(&self, count: usize) -> Vec<TopicSlot> {
+        self.attached.borrow().iter().skip(count).map(|channel| channel.topic).collect()
+    }
+
     /// Like [`lost`](Blackboard::lost), by slot.
     pub fn lost_at(&self, slot: TopicSlot) -> u64 {
         self.from(HostId::LOCAL).lost_at(slot)

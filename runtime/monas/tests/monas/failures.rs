@@ -1,8 +1,10 @@
 //! Activities of a list that fail or panic are called again, skipped, or stop their agent, without
 //! effect on others.
 
-use crate::kit::{BALL, Ball, at, recorder};
-use monas::{Activity, Agent, AgentStatistics, Blackboard, BoxError, FailurePolicy, Hz, Progress, Talws};
+use crate::kit::{BALL, Ball, GAME, at, recorder};
+use monas::{
+    Activity, Agent, AgentStatistics, Blackboard, BoxError, FailurePolicy, Hz, Progress, Talws, Topics,
+};
 
 /// Fails in these cycles of its agent, and records its calls.
 struct FailingActivity<N> {
@@ -125,4 +127,47 @@ fn writes_before_a_failure_are_published() {
     let reads = Agent::new("b", Hz(10)).activity(move |b: &mut Blackboard| note(b.read(BALL).is_some()));
     Talws::new().agent(agent).agent(reads).simulate(1).unwrap().run_until(at(1)).unwrap();
     assert_eq!(seen.taken(), [true]);
+}
+
+/// Reads the ball, and the game from its second call on; declares one of them or nothing.
+struct Declaring(Topics, u32);
+
+impl Activity for Declaring {
+    fn execute(&mut self, blackboard: &mut Blackboard) -> Result<Progress, BoxError> {
+        self.1 += 1;
+        blackboard.read(BALL);
+        if self.1 > 1 {
+            blackboard.read(GAME);
+        }
+        Ok(Progress::Done)
+    }
+
+    fn topics(&self) -> Topics {
+        self.0.clone()
+    }
+}
+
+#[test]
+fn a_listed_activity_fails_when_it_reads_a_topic_that_it_does_not_declare() {
+    let stopped = |topics: Topics| {
+        let activity = Declaring(topics, 0);
+        let agent = Agent::new("a", Hz(10)).activity(activity).on_failure(FailurePolicy::StopAgent);
+        let mut simulation = Talws::new().agent(agent).simulate(1).unwrap();
+        simulation.run_until(at(500)).unwrap();
+        simulation.statistics().agents[0].stopped.clone()
+    };
+    let reason = "activity `Declaring` failed in cycle 2: it reads `test/game`, which it does not declare: \
+                  add the topic to its `topics`";
+    assert_eq!(stopped(Topics::declared().reads(BALL)).as_deref(), Some(reason));
+    assert_eq!(stopped(Topics::declared().reads(BALL).ends_on(GAME)), None);
+    assert_eq!(stopped(Topics::undeclared()), None, "checks do not apply to it");
+}
+
+#[test]
+fn what_is_not_declared_is_reported_once_and_the_activity_goes_on() {
+    let agent = Agent::new("a", Hz(10)).activity(Declaring(Topics::declared().reads(BALL), 0));
+    let mut simulation = Talws::new().agent(agent).simulate(1).unwrap();
+    simulation.run_until(at(900)).unwrap();
+    let statistics = simulation.statistics();
+    assert_eq!((statistics.agents[0].cycles, statistics.agents[0].activities[0].failures), (9, 1));
 }

@@ -41,7 +41,8 @@ impl<A: Activity> Fixture<A> {
     fn run(&mut self) -> Requests {
         let before = self.newest();
         self.blackboard.process_messages(self.now);
-        assert_eq!(self.behaviour.execute(&mut self.blackboard).unwrap(), Progress::Done);
+        let progress = monas::call::execute(&mut self.behaviour, &mut self.blackboard).unwrap();
+        assert_eq!(progress, Progress::Done);
         self.blackboard.publish_all(self.now);
         let after = self.newest();
         let head = self.others.read(topics::HEAD).filter(|_| after.0 != before.0);

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use monas::{Activity, Blackboard, Progress};
+use monas::{Activity, Blackboard, Progress, call};
 use monas_robot::Skill;
 use narukom::{Hub, Retention, Timestamp, Topic};
 
@@ -43,12 +43,12 @@ impl ActivityFixture {
         self
     }
 
-    /// Calls the activity once, in its own cycle, and returns whether it is done. A skill that it
-    /// requests has to be one that it declares.
+    /// Calls the activity once, in its own cycle, and returns whether it is done. It has to declare
+    /// the topics that it reads and a skill that it requests.
     pub(crate) fn run(&mut self, activity: &mut dyn Activity) -> bool {
         let before = self.motion();
         self.blackboard.process_messages(self.now);
-        let progress = activity.execute(&mut self.blackboard).unwrap();
+        let progress = call::execute(activity, &mut self.blackboard).unwrap();
         self.blackboard.publish_all(self.now);
         if let Some(wanted) = self.motion().filter(|wanted| before.as_ref() != Some(wanted))
             && let name = wanted.kind().as_str_name()
@@ -68,7 +68,7 @@ impl ActivityFixture {
     /// The error of a call of the activity, if it fails.
     pub(crate) fn fails(&mut self, activity: &mut dyn Activity) -> Option<String> {
         self.blackboard.process_messages(self.now);
-        activity.execute(&mut self.blackboard).err().map(|error| error.to_string())
+        call::execute(activity, &mut self.blackboard).err().map(|error| error.to_string())
     }
 
     /// The newest message of a topic.
