@@ -56,11 +56,15 @@ pub struct JointPose {
 pub fn grammar(anatomy: &Anatomy) -> Grammar {
     let seconds = Kind::number_in(anatomy.cycle.as_secs_f64(), LONGEST);
     let pose = ElementRule::new("pose", "a pose of the joints")
-        .attribute(AttributeRule::new("duration", seconds, "the time of the way to it, s").or("1"))
-        .attribute(AttributeRule::new("stiffness", Kind::number_in(0.0, 1.0), "of all joints on the way"))
+        .attribute(AttributeRule::new("duration", seconds, "the time of the way to the pose, s").or("1"))
+        .attribute(AttributeRule::new(
+            "stiffness",
+            Kind::number_in(0.0, 1.0),
+            "that of all joints on the way",
+        ))
         .attributes(anatomy.joints.iter().map(|joint| {
             let angle = Kind::number_in(joint.limits.low, joint.limits.high);
-            AttributeRule::new(joint.name, angle, "its angle, rad")
+            AttributeRule::new(joint.name, angle, "the angle of the joint, rad")
         }));
     Grammar::default().root(pose).root(ElementRule::new("poses", "a sequence").group().children("pose"))
 }
@@ -78,11 +82,12 @@ pub fn load(path: &Path, anatomy: &Anatomy) -> (Option<Vec<JointPose>>, Vec<Diag
 pub fn read(source: &Arc<Source>, anatomy: &Anatomy) -> (Option<Vec<JointPose>>, Vec<Diagnostic>) {
     let grammar = grammar(anatomy);
     let (roots, found) = grammar.read(source);
-    let mut diagnostics: Vec<Diagnostic> = found.into_iter().map(with_units).collect();
     let elements: Vec<&Element> = roots
         .iter()
         .flat_map(|root| if root.is("poses") { root.children() } else { std::slice::from_ref(root) })
         .collect();
+    let explained = |diagnostic| with_meaning(diagnostic, &elements, &grammar);
+    let mut diagnostics: Vec<Diagnostic> = found.into_iter().map(explained).collect();
     if elements.is_empty() && diagnostics.is_empty() {
         let missing = Diagnostic::error("E0305", Span::default(), "expected `pose`, the file holds none");
         diagnostics.push(missing.with_hint("a sequence has at least one pose").in_source(source));
@@ -95,11 +100,18 @@ pub fn read(source: &Arc<Source>, anatomy: &Anatomy) -> (Option<Vec<JointPose>>,
     (Some(poses), diagnostics)
 }
 
-/// A finding about a value names the units, since other tools write degrees and milliseconds.
-fn with_units(diagnostic: Diagnostic) -> Diagnostic {
-    match (diagnostic.code, &diagnostic.hint) {
-        ("E0306", None) => diagnostic.with_hint("angles are in rad, `duration` is in s"),
-        _ => diagnostic,
+/// A finding about a value says what the attribute means, with its unit: other tools write degrees
+/// and milliseconds.
+fn with_meaning(diagnostic: Diagnostic, poses: &[&Element], grammar: &Grammar) -> Diagnostic {
+    if diagnostic.code != "E0306" || diagnostic.hint.is_some() {
+        return diagnostic;
+    }
+    let mut attributes = poses.iter().flat_map(|pose| pose.attributes());
+    let given = attributes.find(|given| given.value_span == diagnostic.span);
+    let rule = given.and_then(|given| grammar.element("pose")?.attribute_named(&given.name));
+    match rule {
+        Some(rule) => diagnostic.with_hint(rule.doc),
+        None => diagnostic,
     }
 }
 

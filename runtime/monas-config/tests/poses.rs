@@ -63,27 +63,27 @@ fn what_is_wrong_is_reported_with_place_and_hint() {
         (
             "<poses>\n  <pose LKneePitch=90/>\n</poses>",
             "a.xml:2:20: error[E0306]: `LKneePitch` is `90`, expected a number from -0.0923 to 2.1125 \
-             (angles are in rad, `duration` is in s)",
+             (the angle of the joint, rad)",
         ),
         (
             "<pose HeadPitch=NaN/>",
             "a.xml:1:17: error[E0306]: `HeadPitch` is `NaN`, expected a number from -0.672 to 0.5149 \
-             (angles are in rad, `duration` is in s)",
+             (the angle of the joint, rad)",
         ),
         (
             "<pose duration=0 HeadPitch=0/>",
             "a.xml:1:16: error[E0306]: `duration` is `0`, expected a number from 0.012 to 60 \
-             (angles are in rad, `duration` is in s)",
+             (the time of the way to the pose, s)",
         ),
         (
             "<pose duration=-1/>",
             "a.xml:1:16: error[E0306]: `duration` is `-1`, expected a number from 0.012 to 60 \
-             (angles are in rad, `duration` is in s)",
+             (the time of the way to the pose, s)",
         ),
         (
             "<pose stiffness=1.5/>",
             "a.xml:1:17: error[E0306]: `stiffness` is `1.5`, expected a number from 0 to 1 \
-             (angles are in rad, `duration` is in s)",
+             (that of all joints on the way)",
         ),
         (
             "<poses/>",
