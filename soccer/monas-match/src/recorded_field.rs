@@ -100,7 +100,8 @@ impl RecordedField {
         let seconds = |time: Duration| time.as_secs_f64();
         let Some(begin) = begin else {
             return Err(Error::picture(format!(
-                "the tape has no field: there is no message on `{}`",
+                "the field is drawn from the topic `{}`, of which the tape has no message: draw the tape of the \
+                 whole run, or keep this topic when you cut it",
                 TRUTH.path()
             )));
         };

@@ -412,9 +412,10 @@ fn what_cannot_be_drawn_is_said() {
     fs::write(&agents, agent).expect("the folder takes files");
     done(&["run", &text(&agents), "--for", "100ms", "--record", &text(&path), "--no-control"]);
     let (code, err) = said(&[&text(&path), "--at", "0s"]);
-    assert!(code == Some(1) && err.contains("recording of agents without a match"), "{err}");
+    let instead = format!("with `monas studio {}`", path.display());
+    assert!(code == Some(1) && err.contains("agents outside of a match") && err.contains(&instead), "{err}");
     let only = text(&folder.path().join("only.mcap"));
     done(&["tape", "cut", &tape(), "--topic", "soccer/ball", "-o", &only]);
     let (code, err) = said(&[&only, "--at", "1s"]);
-    assert!(code == Some(1) && err.contains("there is no message on `sim/truth`"), "{err}");
+    assert!(code == Some(1) && err.contains("from the topic `sim/truth`, of which the tape has no"), "{err}");
 }

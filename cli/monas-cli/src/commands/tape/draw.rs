@@ -50,8 +50,12 @@ pub(crate) fn execute(
     let (path, settings) = recorded_configuration(&recording, folder.path(), format)?;
     let invalid = |diagnostics| CommandFailure::Invalid(format, diagnostics);
     if kind_of(&path).map_err(|unread| invalid(vec![*unread]))? != ConfigurationKind::Match {
-        let message = "the tape has no field: it is the recording of agents without a match";
-        return Err(CommandFailure::Failed(format, message.into()));
+        let tape = arguments.file.display();
+        let message = format!(
+            "{tape} records agents outside of a match, so that nothing on it says where robots and ball are on \
+             the field; see what the agents did with `monas studio {tape}`, and the messages with `monas tape export`"
+        );
+        return Err(CommandFailure::Failed(format, message));
     }
     let layers = layers::of(&path, &LayerArguments { settings, robot: None }).map_err(invalid)?;
     let field = RecordedField::load(&path, &layers).map_err(invalid)?;
