@@ -269,9 +269,12 @@ impl Suggestions {
 /// The candidate most similar to `wrong`, if at most a third of its letters differ, ignoring case.
 pub fn nearest<'a>(wrong: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let lower = wrong.to_lowercase();
-    let limit = (wrong.chars().count() / 3).max(1);
+    let length = wrong.chars().count();
+    let limit = (length / 3).max(1);
     candidates
         .into_iter()
+        // Names of other lengths differ by more, which costs nothing to find.
+        .filter(|name| name.chars().count().abs_diff(length) <= limit)
         .map(|name| (strsim::damerau_levenshtein(&lower, &name.to_lowercase()), name))
         .filter(|(distance, _)| *distance <= limit)
         .min()
@@ -346,5 +349,7 @@ mod tests {
     fn nearest_is_silent_when_nothing_is_near() {
         assert_eq!(nearest("Vsion", ["Vision", "Sensors"]), Some("Vision"));
         assert_eq!(nearest("Elephant", ["Vision", "Sensors"]), None);
+        assert_eq!(nearest("Visi", ["Vision"]), None, "two letters more");
+        assert_eq!(nearest("Ball", ["Balls", "Bal"]), Some("Bal"), "a letter more or less");
     }
 }

@@ -97,21 +97,25 @@ impl<'a> NameContext<'a> {
     /// names can be its values.
     pub(crate) fn variable(&self, path: &Path, expected: Option<&ValueType>) -> CompileResult<TypedTerm> {
         let mut meanings = self.meanings(path, expected);
-        let as_message = self.variable_of_message(path, expected);
-        if meanings.len() + usize::from(as_message.is_ok()) > 1 {
+        // The name of a constant, say, is not looked for among the messages: that it is none of
+        // them would be answered with the most similar one.
+        let as_message = match path.bare().filter(|name| !self.names_message(name)) {
+            Some(name) => Err(name),
+            None => Ok(self.variable_of_message(path, expected)),
+        };
+        let is_message = matches!(as_message, Ok(Ok(_)));
+        if meanings.len() + usize::from(is_message) > 1 {
             let mut all: Vec<_> = meanings.iter().map(|meaning| meaning.what.as_str()).collect();
-            all.extend(as_message.is_ok().then_some("a message"));
+            all.extend(is_message.then_some("a message"));
             let message = format!("`{path}` has several meanings: {}", all.join(", "));
             return Err(vec![
                 Diagnostic::error("E0131", path.place.0, message).with_hint("rename all but one"),
             ]);
         }
-        match (meanings.pop(), path.bare()) {
+        match (meanings.pop(), as_message) {
             (Some(meaning), _) => Ok(meaning.typed),
-            (None, Some(name)) if !self.names_message(name) => {
-                Err(vec![self.unknown_name(path, name, expected)])
-            }
-            _ => as_message,
+            (None, Err(name)) => Err(vec![self.unknown_name(path, name, expected)]),
+            (None, Ok(as_message)) => as_message,
         }
     }
 
