@@ -280,11 +280,19 @@ fn slot(topic: TopicId) -> TopicSlot {
 fn model(chart: &CompiledChart, number: u32) -> records::Model {
     let statechart = chart.statechart();
     let events = (0..chart.events().len() as u32).map(yase::expression::EventId);
+    let nodes: Vec<String> = statechart.nodes().map(|(id, _)| statechart.path(id)).collect();
+    // A transition has two of these paths: computing them anew took a third of many short runs.
+    let short = |node: NodeId| {
+        let path = nodes.get(node.0 as usize).map_or("", String::as_str);
+        path.split_once('/').map_or(path, |(_, rest)| rest)
+    };
+    let name =
+        |transition: &yase::statechart::Transition| arrow(short(transition.source), short(transition.target));
     records::Model {
         chart: number,
         name: statechart.name.clone(),
-        nodes: statechart.nodes().map(|(id, _)| statechart.path(id)).collect(),
-        transitions: statechart.transitions().map(|(id, _)| transition_name(chart, id)).collect(),
+        transitions: statechart.transitions().map(|(_, transition)| name(transition)).collect(),
+        nodes,
         events: events.map(|event| chart.events().name(event).to_owned()).collect(),
     }
 }
@@ -292,7 +300,11 @@ fn model(chart: &CompiledChart, number: u32) -> records::Model {
 /// The name of a transition in traces: `source -> target`.
 pub(crate) fn transition_name(chart: &CompiledChart, id: TransitionId) -> String {
     let transition = chart.statechart().transition(id);
-    format!("{} -> {}", chart.short_path(transition.source), chart.short_path(transition.target))
+    arrow(&chart.short_path(transition.source), &chart.short_path(transition.target))
+}
+
+fn arrow(source: &str, target: &str) -> String {
+    format!("{source} -> {target}")
 }
 
 /// A field of a message; the path leads through nested messages. `Missing` if one of these is not
