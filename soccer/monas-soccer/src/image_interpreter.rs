@@ -16,9 +16,11 @@ use crate::{FieldLine, FieldLines, FieldPoint};
 /// The pose of a camera follows from the head joints and the inclination of the torso at the time
 /// of the image. How ball and goals look, and the colours with which the calibration begins, are in
 /// the message of the images: who provides the images knows the field, and a role works on any.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct ImageInterpreter {
-    vision: Vision,
+    /// None before the first images: most bodies deliver none, and its table of colours takes a
+    /// while to compute.
+    vision: Option<Vision>,
     /// How the objects look for which `vision` looks.
     objects: ObjectSet,
     /// The colours of the images with which the calibration began.
@@ -32,14 +34,6 @@ pub struct Interpretation {
     pub sightings: Sightings,
     /// Field lines and the border of the field.
     pub lines: FieldLines,
-}
-
-impl Default for ImageInterpreter {
-    /// Looks for the ball and the goals of 2010, until images have others.
-    fn default() -> ImageInterpreter {
-        let objects = ObjectSet::default();
-        ImageInterpreter { vision: Vision::new(field_objects(objects)), objects, colours: None }
-    }
 }
 
 /// The most lines, and the most points of the border, of a message.
@@ -85,12 +79,18 @@ impl ImageInterpreter {
         }
         if has_new_colours || images.objects() != self.objects {
             self.objects = images.objects();
+            self.vision = None;
+        }
+    }
+
+    fn vision(&mut self) -> &mut Vision {
+        self.vision.get_or_insert_with(|| {
             let objects = field_objects(self.objects);
-            self.vision = match &self.colours {
+            match &self.colours {
                 Some(colours) => Vision::starting_from(objects, colour_model(colours)),
                 None => Vision::new(objects),
-            };
-        }
+            }
+        })
     }
 
     fn add(
@@ -111,15 +111,15 @@ impl ImageInterpreter {
             pitch: sensors.head_pitch + message.camera_tilt,
         };
         let camera = Camera::new(width, height, message.angle_of_view, &head.robot_from_camera())?;
-        let seen = self.vision.see(&image, &camera)?;
-        lines.extend_from_slice(&seen.lines);
-        border.extend_from_slice(&seen.border_points);
-        let is_known =
-            |objects: &[Sighting], found: &Sighting| objects.iter().any(|known| is_same(known, found));
         let ball_colour = match self.objects {
             ObjectSet::Of2010 => Colour::Orange,
             ObjectSet::OfToday => Colour::White,
         };
+        let seen = self.vision().see(&image, &camera)?;
+        lines.extend_from_slice(&seen.lines);
+        border.extend_from_slice(&seen.border_points);
+        let is_known =
+            |objects: &[Sighting], found: &Sighting| objects.iter().any(|known| is_same(known, found));
         let ball = seen.ball.iter().map(|ball| sighting(ObjectKind::Ball, ball_colour, ball));
         let posts = seen.posts.iter().map(post);
         let robots = seen.robots.iter().map(|robot| {
