@@ -7,6 +7,7 @@ use std::net::TcpListener;
 use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
+use std::sync::LazyLock;
 
 use serde_json::Value;
 
@@ -28,6 +29,14 @@ impl Drop for Site {
         let _ = self.server.wait();
     }
 }
+
+/// This program, stripped once for all tests if `strip` is installed: most of its size is debug
+/// information and symbols, which each release would copy and hash.
+static PROGRAM: LazyLock<String> = LazyLock::new(|| {
+    let (whole, small) = (env!("CARGO_BIN_EXE_monas"), concat!(env!("CARGO_TARGET_TMPDIR"), "/monas"));
+    let strip = Command::new("strip").args(["-o", small, whole]).status();
+    if strip.is_ok_and(|status| status.success()) { small } else { whole }.to_owned()
+});
 
 /// The first of these programs that exists.
 fn installed(paths: &[&str]) -> Option<PathBuf> {
@@ -99,7 +108,7 @@ impl Site {
         write(
             &at("ssh_config"),
             &format!(
-                "UserKnownHostsFile {}\nStrictHostKeyChecking accept-new\nIdentitiesOnly yes\nLogLevel ERROR\n",
+                "UserKnownHostsFile {}\nStrictHostKeyChecking accept-new\nIdentitiesOnly yes\nLogLevel ERROR\nCiphers ^aes128-gcm@openssh.com\n",
                 at("known").display()
             ),
         );
@@ -146,20 +155,9 @@ impl Site {
 
     /// Deploys this program.
     fn bring(&self) -> Value {
-        let answer = self.deploy(&["--program", &self.program(), "--format", "json"]);
+        let answer = self.deploy(&["--program", &PROGRAM, "--format", "json"]);
         assert_eq!(answer.code, Some(0), "{answer:?}");
         serde_json::from_str(&answer.out).expect("JSON")
-    }
-
-    /// This program, stripped if `strip` is installed: most of its size is debug information.
-    fn program(&self) -> String {
-        let (whole, small) = (env!("CARGO_BIN_EXE_monas"), self.at("monas"));
-        let mut strip = Command::new("strip");
-        strip.args(["--strip-debug", "-o"]).arg(&small).arg(whole);
-        match small.is_file() || strip.status().is_ok_and(|status| status.success()) {
-            true => small.display().to_string(),
-            false => whole.into(),
-        }
     }
 
     /// The robot's current release.
