@@ -7,7 +7,7 @@ use monas_vision::FieldObjects;
 #[path = "../tests/measure/mod.rs"]
 mod measure;
 
-use measure::{CONDITIONS, Measures, Sequence};
+use measure::{CONDITIONS, Measures, Sequence, Views};
 
 /// The columns of a line of [`Measures`].
 const HEADER: &str = "\
@@ -21,14 +21,17 @@ fn main() {
     };
     let (images, width) = (number(1, 100), number(2, 640) as usize);
     println!("{HEADER}");
-    for (name, objects) in [("2010", FieldObjects::OF_2010), ("today", FieldObjects::OF_TODAY)] {
-        let mut all = Measures::default();
-        for condition in &CONDITIONS {
-            let measures = Sequence { objects, condition, images, width, seed: 1 }.measure();
-            println!("{name:<6}{:<9}{measures}", condition.name);
-            all.add(&measures);
+    for (views, title) in [(Views::Field, "the field"), (Views::NearRobots, "robots at 0.4 to 1.5 m")] {
+        println!("{title}");
+        for (name, objects) in [("2010", FieldObjects::OF_2010), ("today", FieldObjects::OF_TODAY)] {
+            let mut all = Measures::default();
+            for condition in &CONDITIONS {
+                let measures = Sequence { views, objects, condition, images, width, seed: 1 }.measure();
+                println!("{name:<6}{:<9}{measures}", condition.name);
+                all.add(&measures);
+            }
+            println!("{name:<6}{:<9}{all}", "all");
+            println!("{name:<6}jerseys: {} of {} wrong", all.wrong_jerseys, all.jerseys);
         }
-        println!("{name:<6}{:<9}{all}", "all");
-        println!("{name:<6}jerseys: {} of {} wrong", all.wrong_jerseys, all.jerseys);
     }
 }

@@ -11,7 +11,7 @@ use nalgebra::{Isometry3, Point2, Point3, UnitQuaternion, Vector3};
 
 mod measure;
 
-use measure::{Condition, LAMPS, LAMPS_TO_DAY, Measures, Sequence};
+use measure::{Condition, LAMPS, LAMPS_TO_DAY, Measures, Sequence, Views};
 
 const WIDTH: usize = 640;
 const HEIGHT: usize = 480;
@@ -88,8 +88,15 @@ fn table(condition: &Condition) -> ColourModel {
 }
 
 fn measures(condition: &'static Condition, vision: Vision) -> Measures {
-    Sequence { objects: FieldObjects::OF_2010, condition, images: 60, width: WIDTH, seed: 3 }
-        .measure_with(vision)
+    Sequence {
+        views: Views::Field,
+        objects: FieldObjects::OF_2010,
+        condition,
+        images: 60,
+        width: WIDTH,
+        seed: 3,
+    }
+    .measure_with(vision)
 }
 
 #[test]

@@ -6,7 +6,7 @@ use monas_vision::FieldObjects;
 
 mod measure;
 
-use measure::{CONDITIONS, Measures, Sequence, Tally, mean, ninth_decile};
+use measure::{CONDITIONS, Measures, Sequence, Tally, Views, mean, ninth_decile};
 
 /// What is required of the sightings of a kind of object, over all lights.
 struct Bounds {
@@ -34,7 +34,7 @@ fn check(name: &str, tally: &Tally, images: u32, bounds: &Bounds) {
 fn measure(objects: FieldObjects, images: u32, width: usize) -> Measures {
     let mut all = Measures::default();
     for condition in &CONDITIONS {
-        let measures = Sequence { objects, condition, images, width, seed: 1 }.measure();
+        let measures = Sequence { views: Views::Field, objects, condition, images, width, seed: 1 }.measure();
         assert!(measures.ball.recall() >= 0.85, "{}: ball {:?}", condition.name, measures.ball);
         assert!(measures.lines.recall() >= 0.95, "{}: {}", condition.name, measures.lines.recall());
         all.add(&measures);
@@ -109,6 +109,7 @@ fn small_images_show_the_same_nearby() {
 #[test]
 fn the_same_sequence_gives_the_same_figures() {
     let sequence = Sequence {
+        views: Views::Field,
         objects: FieldObjects::OF_TODAY,
         condition: &CONDITIONS[7],
         images: 3,

@@ -13,6 +13,8 @@ use nalgebra::{Isometry2, Isometry3, Point2, Point3, UnitQuaternion, Vector2, Ve
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg64;
 
+mod near;
+
 /// The camera of a Nao of 2010: 47.8 degrees from left to right.
 const ANGLE_OF_VIEW: f64 = 0.8343;
 /// Standard deviation of the angles of joints and inertial unit, rad: about 0.15 degrees.
@@ -215,8 +217,18 @@ impl fmt::Display for Measures {
     }
 }
 
+/// What the images of a sequence show.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Views {
+    /// A robot that looks around anywhere on the field.
+    Field,
+    /// Robots near the camera.
+    NearRobots,
+}
+
 /// One sequence: 640 by 480 pixels unless `width` is less.
 pub(crate) struct Sequence {
+    pub(crate) views: Views,
     pub(crate) objects: FieldObjects,
     pub(crate) condition: &'static Condition,
     pub(crate) images: u32,
@@ -235,7 +247,10 @@ impl Sequence {
         let (mut renderer, mut pixels) = (Renderer::default(), Vec::new());
         let mut measures = Measures { images: self.images, ..Measures::default() };
         for number in 0..self.images {
-            let view = View::choose(&mut random, self);
+            let view = match self.views {
+                Views::Field => View::choose(&mut random, self),
+                Views::NearRobots => near::choose(&mut random, self),
+            };
             let progress = f64::from(number) / f64::from(self.images);
             let light = (self.condition.light)(progress);
             let camera = view.camera(&view.head, self.width, true);
@@ -412,7 +427,8 @@ impl View {
             let is_shown = within(camera, Point3::new(robot.position.x, robot.position.y, 0.0), 0.15)
                 && within(camera, Point3::new(robot.position.x, robot.position.y, 0.35), 0.15);
             let hidden = self.is_hidden(robot.position, Some(robot.position), 0.15);
-            if !is_shown || own.coords.norm() > ROBOT_RANGE || hidden {
+            // A robot that lies is not higher than a ball.
+            if robot.lies || !is_shown || own.coords.norm() > ROBOT_RANGE || hidden {
                 continue;
             }
             tally.shown += 1;
