@@ -22,17 +22,14 @@ struct MarkedFrame {
 
 const BALL: Option<MarkedBox> = Some([356.0, 266.0, 382.0, 292.0]);
 
-/// A bright door, and the carpet before it, which its light bleaches.
-const GLARE: MarkedBox = [405.0, 80.0, 575.0, 270.0];
-
 const fn top(file: &'static str, ball: Option<MarkedBox>, others: &'static [MarkedBox]) -> MarkedFrame {
     MarkedFrame { file, pitches: &[8.0], ball, others }
 }
 
 /// The lower camera of a Nao looks 39.7 degrees lower than the upper one.
 const FRAMES: [MarkedFrame; 9] = [
-    top("nao_top_000.jpg", BALL, &[[0.0, 0.0, 128.0, 312.0], GLARE]),
-    top("nao_top_020.jpg", BALL, &[[40.0, 0.0, 152.0, 312.0], GLARE]),
+    top("nao_top_000.jpg", BALL, &[[0.0, 0.0, 128.0, 312.0]]),
+    top("nao_top_020.jpg", BALL, &[[40.0, 0.0, 152.0, 312.0]]),
     top("nao_top_030.jpg", None, &[[0.0, 0.0, 108.0, 480.0], [286.0, 20.0, 640.0, 450.0]]),
     top("nao_top_150.jpg", BALL, &[]),
     top("nao_top_156.jpg", BALL, &[]),
@@ -104,5 +101,5 @@ fn real_frames_show_the_ball_and_no_robots_or_posts() {
     }
     println!("{found} of {shown} balls; {people} people and things taken for robots");
     assert_eq!((shown, found), (7, 7));
-    assert!(people <= 6, "{people} people and things taken for robots");
+    assert!(people <= 4, "{people} people and things taken for robots");
 }

@@ -9,8 +9,8 @@
 //! second pixel gets a class from a table ([`ColourTable`]), scan lines find the border of the
 //! field, candidates for the ball are squares that differ from the carpet around them, and are
 //! checked in the image for size, roundness and content; posts cross the horizon and stand on the
-//! field; robots are higher and wider than anything else on the carpet; line points are bright bars
-//! between carpet as wide as a line.
+//! field, with carpet beside them; robots are higher and wider than anything else on the carpet;
+//! line points are bright bars between carpet as wide as a line.
 //!
 //! Everything is a function of the images: there are no threads, no clocks and no files. After a
 //! few images [`Vision::see`] does not allocate. [`ColourSampler`] makes the colours with which a

@@ -108,7 +108,7 @@ impl Vision {
             seen.ball = self.ball.search(&look, &self.border);
             self.posts.scan(&look, &self.border, &mut seen.posts);
             self.robots.scan(&look, &self.border, seen);
-            self.lines.scan(&look, &self.border, seen);
+            self.lines.scan(&look, &self.border, self.robots.cut_bodies(), seen);
         }
         Ok(seen)
     }

@@ -50,9 +50,9 @@ fn check_all(all: &Measures, posts: f64) {
         "posts",
         &all.posts,
         images,
-        &Bounds { shown: 25, recall: posts, wrong: 0.02, distance: (0.03, 0.06) },
+        &Bounds { shown: 25, recall: posts, wrong: 0.005, distance: (0.03, 0.06) },
     );
-    let robots = Bounds { shown: 10, recall: 0.9, wrong: 0.02, distance: (0.05, 0.09) };
+    let robots = Bounds { shown: 10, recall: 0.9, wrong: 0.005, distance: (0.05, 0.09) };
     check("robots", &all.robots, images, &robots);
     assert!(all.wrong_jerseys * 20 <= all.jerseys, "{} of {} jerseys", all.wrong_jerseys, all.jerseys);
     let lines = &all.lines;

@@ -297,7 +297,7 @@ impl Look<'_> {
         let reach = (0.85 * circle.radius / pace) as i32;
         let (mut count, mut orange, mut green, mut white) = (0u32, 0u32, 0u32, 0u32);
         let (mut brightest, mut darkest, mut sum) = (0u8, 255u8, 0u32);
-        let mut dark = 0u32;
+        let (mut dark, mut upper, mut dark_above) = (0u32, 0u32, 0u32);
         let limit = self.table.model().white_luma;
         for row in -reach..=reach {
             for column in -reach..=reach {
@@ -313,7 +313,13 @@ impl Look<'_> {
                 orange += u32::from(is_orange(class));
                 green += u32::from(class == ColourClass::Green);
                 white += u32::from(class == ColourClass::White);
-                dark += u32::from(f32::from(luma) < 0.45 * limit && class != ColourClass::Green);
+                // A patch is black: a jersey and the carpet are dark, but have a colour.
+                let is_black = matches!(class, ColourClass::Dark | ColourClass::Other | ColourClass::White);
+                let is_dark = u32::from(f32::from(luma) < 0.45 * limit && is_black);
+                dark += is_dark;
+                if 2 * row < reach {
+                    (upper, dark_above) = (upper + 1, dark_above + is_dark);
+                }
             }
         }
         let share = |part: u32| f64::from(part) / f64::from(count.max(1));
@@ -321,7 +327,10 @@ impl Look<'_> {
             BallPattern::Orange => (share(orange) > 0.7).then(|| share(orange)),
             BallPattern::BlackAndWhite => {
                 let contrast = f64::from(darkest) / f64::from(brightest.max(1));
-                let is_patched = share(dark) > 0.04 && share(dark) < 0.75 && contrast < 0.48;
+                // What is white all over is dark at its lower end, where the light does not reach.
+                let has_patch_above = 50 * dark_above > upper;
+                let is_patched =
+                    share(dark) > 0.04 && share(dark) < 0.75 && contrast < 0.48 && has_patch_above;
                 let is_pale = share(white) > 0.2 && share(green) < 0.2;
                 (is_patched && is_pale && sum > 0).then(|| share(white).min(0.6) + share(dark).min(0.3))
             }

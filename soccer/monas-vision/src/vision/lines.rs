@@ -24,6 +24,8 @@ pub(crate) struct LineScan {
     /// Points of chains, each with the index of the next of its chain.
     linked: Vec<(GroundPoint, usize)>,
     run: Vec<GroundPoint>,
+    /// Bodies that the lower edge of the image cuts.
+    bodies: Vec<PixelBox>,
 }
 
 /// Line points of neighbouring scans that follow each other.
@@ -47,7 +49,11 @@ enum ScanAxis {
 }
 
 impl LineScan {
-    pub(crate) fn scan(&mut self, look: &Look<'_>, border: &BorderScan, seen: &mut Seen) {
+    /// Finds line points and straight parts, none of them on what was seen or on a body that the
+    /// lower edge of the image cuts.
+    pub(crate) fn scan(&mut self, look: &Look<'_>, border: &BorderScan, cut: &[PixelBox], seen: &mut Seen) {
+        self.bodies.clear();
+        self.bodies.extend_from_slice(cut);
         let (width, height) = (look.image.width(), look.image.height());
         let part = |spacing: usize| (spacing * width / 640).max(2);
         for (axis, spacing, count) in
@@ -110,7 +116,7 @@ impl LineScan {
                 let (begin, finish) = ((start + begin) as f64, (start + fall) as f64);
                 if let Some(point) = line_point(look, axis, pixel, begin, finish, (start, end))
                     && is_on_field(look, border, &point)
-                    && !is_on_object(seen, &point)
+                    && !is_on_object(seen, &self.bodies, &point)
                     && seen.line_points.len() < MOST_POINTS
                 {
                     seen.line_points.push(point);
@@ -267,17 +273,19 @@ fn is_on_field(look: &Look<'_>, border: &BorderScan, point: &GroundPoint) -> boo
     point.pixel[1] / step > f64::from(border.row((point.pixel[0] / step) as usize)) + 0.5
 }
 
-/// Whether a point belongs to a ball, a post or a robot.
-fn is_on_object(seen: &Seen, point: &GroundPoint) -> bool {
+/// Whether a point belongs to a ball, a post, a robot or another body.
+fn is_on_object(seen: &Seen, bodies: &[PixelBox], point: &GroundPoint) -> bool {
     let [x, y] = point.pixel;
     let holds = |area: &PixelBox, margin: f64| {
         (area.left - margin..area.right + margin).contains(&x)
             && (area.top - margin..area.bottom + margin).contains(&y)
     };
-    let of = |sight: &Sight| holds(&sight.area, 0.1 * (sight.area.right - sight.area.left) + 2.0);
+    let within = |area: &PixelBox| holds(area, 0.1 * (area.right - area.left) + 2.0);
+    let of = |sight: &Sight| within(&sight.area);
     seen.ball.as_ref().is_some_and(of)
         || seen.posts.iter().any(|post| of(&post.sight))
         || seen.robots.iter().any(|robot| of(&robot.sight))
+        || bodies.iter().any(within)
 }
 
 /// Removes straight parts that lie on longer ones: rows and columns may find the same.

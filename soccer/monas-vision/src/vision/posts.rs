@@ -98,6 +98,10 @@ fn post(
 ) -> Option<Sight> {
     let (map, step) = (look.map, look.map.step as f64);
     let middle = (left + right) / 2;
+    // Where the field fills the image to its upper edge, a leg of a robot and a post look the same.
+    if paint == GoalPaint::White && border.row(middle) < 2.0 {
+        return None;
+    }
     let start = scan_rows(look, border, class, middle).nth(ROWS / 2)?;
     let bar = Bar::new(look, class, start, left, right);
     let foot = bar.last_row(look, start..map.rows);
@@ -126,7 +130,8 @@ fn post(
         false => {
             let ratio = width / expected;
             let slack = 2.0 * step / expected;
-            if !(0.5 - slack..=1.7 + slack).contains(&ratio) {
+            let most = if paint == GoalPaint::White { 1.5 } else { 1.7 };
+            if !(0.5 - slack..=most + slack).contains(&ratio) {
                 return None;
             }
             // The foot is on the field, with carpet below it.
@@ -151,10 +156,8 @@ fn post(
     if !is_high {
         return None;
     }
-    // Beside a post there is something else, unlike in front of a wall; above the field this may be
-    // white as well.
-    let from = if paint == GoalPaint::White { border.row(middle).max(0.0) as usize } else { top };
-    if !bar.stands_alone(look, from, start.max(foot)) {
+    if !bar.stands_alone(look, top, start.max(foot)) || !bar.is_on_carpet(look, border, foot, expected / step)
+    {
         return None;
     }
     let area =
@@ -189,8 +192,13 @@ impl Bar {
 
     /// The class of a cell, given by its distance from the middle.
     fn class_at(&self, look: &Look<'_>, aside: f64, row: usize) -> ColourClass {
+        self.seen_at(look, aside, row).unwrap_or_default()
+    }
+
+    /// As [`class_at`](Bar::class_at); none outside the image.
+    fn seen_at(&self, look: &Look<'_>, aside: f64, row: usize) -> Option<ColourClass> {
         let column = (self.middle_at(row) + aside).floor();
-        if column < 0.0 { ColourClass::Other } else { look.map.at(column as usize, row) }
+        (column >= 0.0 && column < look.map.columns as f64).then(|| look.map.at(column as usize, row))
     }
 
     /// The last of the rows that has the colour, with gaps of two rows.
@@ -209,13 +217,33 @@ impl Bar {
         last
     }
 
-    /// Whether what is beside it has another class in most rows.
+    /// Whether what is beside it has another class in most rows, unlike in front of a wall. A white
+    /// post may stand in front of a white wall.
     fn stands_alone(&self, look: &Look<'_>, top: usize, bottom: usize) -> bool {
         let away = 2.0 * self.half + 2.0;
         let rows = bottom.saturating_sub(top).max(1);
         let is_free = |aside: f64| {
             2 * (top..bottom).filter(|&row| self.class_at(look, aside, row) == self.class).count() <= rows
         };
-        is_free(-away) && is_free(away)
+        self.class == ColourClass::White || (is_free(-away) && is_free(away))
+    }
+
+    /// Whether there is carpet on both sides of it between the border of the field and its foot:
+    /// an arm or a leg has a body beside it. The shaded side of a post may be too dark for its
+    /// class, so that it seems narrower than the `expected` cells.
+    fn is_on_carpet(&self, look: &Look<'_>, border: &BorderScan, foot: usize, expected: f64) -> bool {
+        let from = border.row(self.middle as usize).max(0.0) as usize + 1;
+        let half = self.half.max(expected / 2.0);
+        [-1.0, 1.0].into_iter().all(|side| {
+            let (mut carpet, mut cells) = (0, 0);
+            for aside in [1.5 * half + 1.0, 3.0 * half + 1.0] {
+                let seen = (from..foot).filter_map(|row| self.seen_at(look, side * aside, row));
+                for class in seen {
+                    cells += 1;
+                    carpet += usize::from(class == ColourClass::Green);
+                }
+            }
+            2 * carpet >= cells
+        })
     }
 }

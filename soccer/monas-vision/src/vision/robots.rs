@@ -15,6 +15,9 @@ const MOST_WIDTH: f64 = 0.9;
 const HALF_DEPTH: f64 = 0.08;
 /// Height of a robot, m (Nao: 0.57).
 const HEIGHT: f64 = 0.57;
+/// Greatest seeming width of an arm, and gap between it and the legs, m.
+const ARM: f64 = 0.17;
+const ARM_GAP: f64 = 0.12;
 /// Cells between two columns that are scanned.
 const SPACING: usize = 2;
 
@@ -23,6 +26,8 @@ const SPACING: usize = 2;
 pub(crate) struct RobotScan {
     /// The foot of an obstacle in each scanned column.
     feet: Vec<Option<usize>>,
+    /// Bodies that the lower edge of the image cuts, so that their distance is not known.
+    cut: Vec<PixelBox>,
 }
 
 impl RobotScan {
@@ -33,15 +38,28 @@ impl RobotScan {
             let is_post = seen.posts.iter().any(|post| is_beside(look, post, column));
             if is_post { None } else { foot(look, border, column) }
         }));
+        self.cut.clear();
         let mut start = 0;
         while start < self.feet.len() {
             let end = self.end_of_group(look, start);
-            if end > start {
-                seen.robots.extend(self.robot(look, start, end));
+            let foot = self.feet[start..end].iter().copied().flatten().max();
+            match foot.and_then(|foot| Body::new(look, start, end, foot)) {
+                // Below the image, the distance of a foot is not known.
+                Some(body) if body.foot + 2 >= look.map.rows => self.cut.push(body.area(look)),
+                Some(body) if body.stands_out(look, &self.feet[start..end]) => {
+                    seen.robots.extend(body.robot(look));
+                }
+                _ => {}
             }
             start = end.max(start + 1);
         }
         drop_arms(look, &mut seen.robots);
+        seen.robots.retain(|robot| !self.cut.iter().any(|body| is_part_of(look, &robot.sight.area, body)));
+    }
+
+    /// The bodies that the lower edge of the image cuts.
+    pub(crate) fn cut_bodies(&self) -> &[PixelBox] {
+        &self.cut
     }
 
     /// The index after a group of neighbours whose feet are about as far away.
@@ -60,54 +78,138 @@ impl RobotScan {
         }
         end
     }
+}
 
-    fn robot(&self, look: &Look<'_>, start: usize, end: usize) -> Option<SeenRobot> {
+/// What stands in a group of columns and is as high and wide as a robot, in cells.
+#[derive(Clone, Copy, Debug)]
+struct Body {
+    left: usize,
+    right: usize,
+    foot: usize,
+    /// Cells per metre at its foot.
+    scale: f64,
+}
+
+impl Body {
+    /// The body in scanned columns whose lowest foot is given; none if it is something else.
+    fn new(look: &Look<'_>, start: usize, end: usize, foot: usize) -> Option<Body> {
         let (map, step) = (look.map, look.map.step as f64);
         let (left, right) = (start * SPACING, (end * SPACING).min(map.columns));
-        let foot = self.feet[start..end].iter().copied().flatten().max()?;
-        // Below the image, the distance of a foot is not known.
-        if foot + 2 >= map.rows {
-            return None;
-        }
-        let centre = (left + right) as f64 / 2.0 * step;
-        let bottom = (foot + 1) as f64 * step;
-        let scale = look.camera.scale(centre, bottom, 0.0) / step;
+        let middle = (left + right) as f64 / 2.0;
+        let scale = look.camera.scale(middle * step, (foot + 1) as f64 * step, 0.0) / step;
         let width = (right - left) as f64 / scale.max(1e-6);
-        let is_cut = left == 0 || right + SPACING >= map.columns;
+        let is_cut = left == 0 || right + SPACING >= map.columns || foot + 2 >= map.rows;
         if width < LEAST_WIDTH || (width > MOST_WIDTH && !is_cut) {
             return None;
         }
         // Neither legs nor chest show the carpet; a line that runs away gets narrower.
         let row = |height: f64| (foot as f64 - height * scale).max(0.0) as f32;
         let legs = map.shares(left as f32, row(0.3), right as f32, foot as f32);
-        let middle = (left + right) as f64 / 2.0;
         let side = |by: f64| (middle + by * scale) as f32;
         let chest = map.shares(side(-0.07), row(0.42), side(0.07), row(0.28));
-        if legs.green > 0.35 || chest.green > 0.25 {
-            return None;
+        (legs.green <= 0.35 && chest.green <= 0.25).then_some(Body { left, right, foot, scale })
+    }
+
+    /// Whether the colour changes at once at most of its feet, which are given for each scanned
+    /// column: light that bleaches the carpet does so little by little.
+    fn stands_out(&self, look: &Look<'_>, feet: &[Option<usize>]) -> bool {
+        /// Least change of luma, as a part of that from carpet to white, and of chroma, as a part
+        /// of that of the carpet.
+        const LEAST: f32 = 0.3;
+        let model = look.table.model();
+        let least_luma = LEAST * (model.white_luma - model.green_luma);
+        let chroma = libm::hypotf(model.green[0] - model.white[0], model.green[1] - model.white[1]);
+        let least_chroma = LEAST * chroma * model.green_luma;
+        let (mut sharp, mut all) = (0, 0);
+        for (index, foot) in feet.iter().enumerate() {
+            let Some(foot) = *foot else { continue };
+            let column = self.left + index * SPACING;
+            // Two cells away from the foot, so that blur does not matter.
+            let above = look.mean_yuv(column, foot.saturating_sub(4)..foot.saturating_sub(1));
+            let below = look.mean_yuv(column, foot + 2..foot + 5);
+            let change = [0, 1, 2].map(|k| above[k] - below[k]);
+            let is_sharp = change[0].abs() > least_luma || libm::hypotf(change[1], change[2]) > least_chroma;
+            (sharp, all) = (sharp + usize::from(is_sharp), all + 1);
         }
-        let near = look.camera.point_at_height(centre, bottom, 0.0)?;
+        2 * sharp >= all
+    }
+
+    /// The pixels that it takes at least.
+    fn area(&self, look: &Look<'_>) -> PixelBox {
+        let step = look.map.step as f64;
+        let top = (self.foot as f64 - HEIGHT * self.scale).max(0.0);
+        PixelBox {
+            left: self.left as f64 * step,
+            top: top * step,
+            right: self.right as f64 * step,
+            bottom: (self.foot + 1) as f64 * step,
+        }
+    }
+
+    fn robot(&self, look: &Look<'_>) -> Option<SeenRobot> {
+        let area = self.area(look);
+        let near = look.camera.point_at_height((area.left + area.right) / 2.0, area.bottom, 0.0)?;
         let away = near - look.camera.position().xy();
         let position = near + away.normalize() * HALF_DEPTH;
-        let top = (foot as f64 - HEIGHT * scale).max(0.0);
-        let area = PixelBox { left: left as f64 * step, top: top * step, right: right as f64 * step, bottom };
-        Some(SeenRobot { sight: Sight::new(position, area), jersey: jersey(look, left, right, foot, scale) })
+        Some(SeenRobot { sight: Sight::new(position, area), jersey: self.jersey(look) })
+    }
+
+    /// The colour of the jersey: the more frequent one between hips and shoulders.
+    fn jersey(&self, look: &Look<'_>) -> Jersey {
+        let Body { left, right, foot, scale } = *self;
+        let row = |height: f64| (foot as f64 - height * scale).max(0.0) as usize;
+        let (mut blue, mut red, mut all) = (0u32, 0u32, 0u32);
+        for y in row(0.5)..row(0.22) {
+            for x in left..right {
+                let class = look.map.at(x, y);
+                blue += u32::from(class == ColourClass::Blue);
+                red += u32::from(matches!(class, ColourClass::Red | ColourClass::Orange));
+                all += 1;
+            }
+        }
+        match all {
+            _ if blue > 2 * red && 12 * blue > all => Jersey::Blue,
+            _ if red > 2 * blue && 12 * red > all => Jersey::Red,
+            _ => Jersey::Unknown,
+        }
+    }
+}
+
+/// Whether what seems to be a robot is a part of a body that the lower edge of the image cuts: it
+/// touches the body, or it is an arm.
+fn is_part_of(look: &Look<'_>, area: &PixelBox, body: &PixelBox) -> bool {
+    let is_beside = |gap: f64| area.left <= body.right + gap && area.right >= body.left - gap;
+    let touches = is_beside((2 * SPACING * look.map.step) as f64);
+    let is_narrow = area.right - area.left < ARM * ground_scale(look, area);
+    touches || (is_narrow && is_beside(ARM_GAP * ground_scale(look, body)))
+}
+
+/// Pixels per metre where the lower edge of a box is on the ground.
+fn ground_scale(look: &Look<'_>, area: &PixelBox) -> f64 {
+    look.camera.scale((area.left + area.right) / 2.0, area.bottom, 0.0)
+}
+
+impl Look<'_> {
+    /// The mean luma and chroma of rows of cells in a column; those below the image do not count.
+    fn mean_yuv(&self, column: usize, rows: std::ops::Range<usize>) -> [f32; 3] {
+        let (step, rows) = (self.map.step, rows.start..rows.end.min(self.map.rows));
+        let count = rows.len().max(1) as f32;
+        rows.fold([0.0; 3], |sum, row| {
+            let yuv = self.image.yuv(column * step, row * step);
+            [0, 1, 2].map(|k| sum[k] + f32::from(yuv[k]) / count)
+        })
     }
 }
 
 /// Removes arms beside a robot: their lower ends are above the ground, so they seem to be narrow
 /// and farther away.
 fn drop_arms(look: &Look<'_>, robots: &mut Vec<SeenRobot>) {
-    /// Greatest seeming width of an arm, and gap between it and the legs, m.
-    const ARM: f64 = 0.17;
-    const GAP: f64 = 0.12;
     let width = |area: &PixelBox| area.right - area.left;
-    let scale = |area: &PixelBox| look.camera.scale((area.left + area.right) / 2.0, area.bottom, 0.0);
     let is_arm = |one: &SeenRobot, of: &SeenRobot| {
         let (arm, body) = (&one.sight.area, &of.sight.area);
-        let gap = GAP * scale(body);
+        let gap = ARM_GAP * ground_scale(look, body);
         one.sight.distance > of.sight.distance
-            && width(arm) < ARM * scale(arm)
+            && width(arm) < ARM * ground_scale(look, arm)
             && arm.left < body.right + gap
             && arm.right > body.left - gap
     };
@@ -172,23 +274,4 @@ fn foot(look: &Look<'_>, border: &BorderScan, column: usize) -> Option<usize> {
         }
     }
     None
-}
-
-/// The colour of the jersey: the more frequent one between hips and shoulders.
-fn jersey(look: &Look<'_>, left: usize, right: usize, foot: usize, scale: f64) -> Jersey {
-    let row = |height: f64| (foot as f64 - height * scale).max(0.0) as usize;
-    let (mut blue, mut red, mut all) = (0u32, 0u32, 0u32);
-    for y in row(0.5)..row(0.22) {
-        for x in left..right {
-            let class = look.map.at(x, y);
-            blue += u32::from(class == ColourClass::Blue);
-            red += u32::from(matches!(class, ColourClass::Red | ColourClass::Orange));
-            all += 1;
-        }
-    }
-    match all {
-        _ if blue > 2 * red && 12 * blue > all => Jersey::Blue,
-        _ if red > 2 * blue && 12 * red > all => Jersey::Red,
-        _ => Jersey::Unknown,
-    }
 }
