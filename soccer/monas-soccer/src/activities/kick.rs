@@ -2,9 +2,10 @@
 
 use monas::{Activity, Blackboard, BoxError, Parameters, Progress, Topics};
 use monas_robot::Skill;
+use nalgebra::Point2;
 
 use super::motion_requests::KickStyle;
-use super::shot::ground;
+use super::shot::{ground, others};
 use super::skills::{RunningSkill, perform};
 use crate::functionality::ball_filter::BallModel;
 use crate::functionality::field::Goal;
@@ -19,20 +20,26 @@ struct Strength {
     rest: f64,
 }
 
+/// Distance of an opponent from the ball within which a kick from afar is soft, metres. Where none
+/// is near, a hard kick costs less time than a second walk to the ball.
+const CONTESTED: f64 = 1.0;
+
 impl Strength {
     fn of(parameters: &Parameters) -> Strength {
         let number = |name| parameters.number(name).filter(|number| number.is_finite()).unwrap_or(0.0);
         Strength { soft_beyond: number("soft_beyond"), rest: number("rest") }
     }
 
-    /// A kick as hard as the body can, unless the ball is known to be far from the goal.
+    /// A kick as hard as the body can, unless the ball is known to be far from the goal and an
+    /// opponent is near it.
     fn style(self, blackboard: &Blackboard) -> KickStyle {
         let (Some(ball), Some(ground)) = (blackboard.read(topics::BALL), ground(blackboard)) else {
             return KickStyle::default();
         };
+        let is_contested = is_contested(blackboard, ball.position());
         let ball = ground.field_from_robot * ball.position();
         let to_goal = (ground.field.goal(Goal::Opponent) - ball).norm();
-        if self.soft_beyond <= 0.0 || to_goal <= self.soft_beyond {
+        if self.soft_beyond <= 0.0 || to_goal <= self.soft_beyond || !is_contested {
             return KickStyle::default();
         }
         let ball_speed = BallModel::default().speed_for(to_goal - self.rest, 0.0);
@@ -40,13 +47,18 @@ impl Strength {
     }
 }
 
+/// Whether an opponent is near the ball, which is at a point of the robot's frame.
+fn is_contested(blackboard: &Blackboard, ball: Point2<f64>) -> bool {
+    others(blackboard).any(|robot| !robot.team_mate && (robot.position() - ball).norm() < CONTESTED)
+}
+
 macro_rules! kick {
     ($($(#[$documentation:meta])* $name:ident: $kind:ident;)*) => {$(
         $(#[$documentation])*
         ///
-        /// Parameters: a kick from more than `soft_beyond` (m) from the goal is so soft that the
-        /// ball comes to rest `rest` (m) before it. By default every kick is as hard as the body
-        /// can.
+        /// Parameters: a kick from more than `soft_beyond` (m) from the goal, with an opponent
+        /// within 1 m of the ball, is so soft that the ball comes to rest `rest` (m) before the
+        /// goal. By default every kick is as hard as the body can.
         #[derive(Clone, Copy, Debug, Default)]
         pub struct $name {
             under_way: RunningSkill,
@@ -75,6 +87,7 @@ macro_rules! kick {
             fn topics(&self) -> Topics {
                 let topics = Topics::declared().reads(topics::MOTION).ends_on(topics::MOTION_STATE);
                 let topics = topics.reads(topics::BALL).reads(topics::GAME_STATE).reads(topics::POSE);
+                let topics = topics.reads(topics::ROBOTS);
                 topics.publishes(topics::MOTION).performs(Skill::$kind.as_str_name())
             }
         }
@@ -94,11 +107,21 @@ kick! {
 mod tests {
     use super::*;
     use crate::activities::activity_fixture::ActivityFixture;
-    use crate::{Ball, GameState, Pose};
+    use crate::{Ball, GameState, OtherRobot, Pose, Robots};
 
-    /// The kick of a robot in the middle of the field, with the ball at its left foot.
+    /// The kick of a robot in the middle of the field, with the ball at its left foot and another
+    /// robot 0.5 m before the ball.
     fn wanted(activity: &mut dyn Activity, pose: Option<Pose>) -> crate::MotionRequest {
+        wanted_near(activity, pose, OtherRobot { x: 0.65, y: 0.05, ..OtherRobot::default() })
+    }
+
+    fn wanted_near(
+        activity: &mut dyn Activity,
+        pose: Option<Pose>,
+        robot: OtherRobot,
+    ) -> crate::MotionRequest {
         let mut stage = ActivityFixture::new();
+        stage.publish(topics::ROBOTS, Robots { robots: vec![robot], ..Robots::default() });
         stage.publish(topics::BALL, Ball { found: true, x: 0.15, y: 0.05, ..Ball::default() });
         let game = GameState { field_length: 6.0, field_width: 4.0, goal_width: 1.4, ..GameState::default() };
         stage.publish(topics::GAME_STATE, game);
@@ -133,5 +156,16 @@ mod tests {
         let near = Pose { x: 1.0, ..Pose::default() };
         assert_eq!(wanted(&mut soft(), Some(near)).ball_speed, 0.0, "a shot");
         assert_eq!(wanted(&mut soft(), None).ball_speed, 0.0, "the pose is not known");
+    }
+
+    #[test]
+    fn only_a_contested_ball_is_laid_before_the_goal() {
+        let is_soft = |x, team_mate| {
+            let robot = OtherRobot { x, y: 0.05, team_mate, ..OtherRobot::default() };
+            wanted_near(&mut soft(), Some(Pose::default()), robot).ball_speed > 0.0
+        };
+        assert!(is_soft(0.15 + CONTESTED - 0.05, false));
+        assert!(!is_soft(0.15 + CONTESTED + 0.05, false), "the opponent is far");
+        assert!(!is_soft(0.65, true), "a team mate");
     }
 }

@@ -34,7 +34,7 @@ const HAS: f64 = 0.1;
 const SHOT_LENGTH: f64 = 1.8;
 /// Distance from the ball within which the center has its part, metres. A player that is farther
 /// away walks to the ball as it would alone.
-const BEGIN: f64 = 1.0;
+const BEGIN: f64 = 1.2;
 /// Prediction time for a rolling ball, seconds.
 const FORESIGHT: f64 = 0.4;
 /// Way that turning by a radian costs, metres.
