@@ -74,6 +74,8 @@ fn a_session_with_a_run_in_real_time() {
 fn a_swap_that_is_refused_says_how_states_are_mapped_and_a_signal_is_reported_in_the_exit_code() {
     let folder = folder();
     let run = start(folder.path());
+    // Both answers are about the same moment.
+    assert_eq!(ask(folder.path(), &["agent", "pause", "Mind"]).code, Some(0));
     let other = folder.path().join("other.srm").display().to_string();
     fs::write(&other, "Role: other\nLiveness:\nother = (SearchBall)~\n").expect("a file");
     let answer = ask(folder.path(), &["agent", "swap", "Mind", &other]);
