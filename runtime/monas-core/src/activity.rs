@@ -159,7 +159,8 @@ impl Topics {
         Topics::default()
     }
 
-    /// The activity reads and publishes only the topics added here.
+    /// The activity reads and publishes only the topics added here. A call fails if it is the
+    /// first one on its blackboard to read another topic.
     pub fn declared() -> Topics {
         Topics { declared: true, ..Topics::default() }
     }
