@@ -280,19 +280,16 @@ fn slot(topic: TopicId) -> TopicSlot {
 fn model(chart: &CompiledChart, number: u32) -> records::Model {
     let statechart = chart.statechart();
     let events = (0..chart.events().len() as u32).map(yase::expression::EventId);
-    let nodes: Vec<String> = statechart.nodes().map(|(id, _)| statechart.path(id)).collect();
-    // A transition has two of these paths: computing them anew took a third of many short runs.
-    let short = |node: NodeId| {
-        let path = nodes.get(node.0 as usize).map_or("", String::as_str);
-        path.split_once('/').map_or(path, |(_, rest)| rest)
-    };
+    // Each transition has two of these paths: computing them anew took a third of many short runs.
+    let short: Vec<String> = statechart.nodes().map(|(id, _)| chart.short_path(id)).collect();
+    let short = |node: NodeId| short.get(node.0 as usize).map_or("", String::as_str);
     let name =
         |transition: &yase::statechart::Transition| arrow(short(transition.source), short(transition.target));
     records::Model {
         chart: number,
         name: statechart.name.clone(),
+        nodes: statechart.nodes().map(|(id, _)| statechart.path(id)).collect(),
         transitions: statechart.transitions().map(|(_, transition)| name(transition)).collect(),
-        nodes,
         events: events.map(|event| chart.events().name(event).to_owned()).collect(),
     }
 }
