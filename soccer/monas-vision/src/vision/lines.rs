@@ -24,8 +24,6 @@ pub(crate) struct LineScan {
     /// Points of chains, each with the index of the next of its chain.
     linked: Vec<(GroundPoint, usize)>,
     run: Vec<GroundPoint>,
-    /// Bodies that the lower edge of the image cuts.
-    bodies: Vec<PixelBox>,
 }
 
 /// Line points of neighbouring scans that follow each other.
@@ -52,8 +50,6 @@ impl LineScan {
     /// Finds line points and straight parts, none of them on what was seen or on a body that the
     /// lower edge of the image cuts.
     pub(crate) fn scan(&mut self, look: &Look<'_>, border: &BorderScan, cut: &[PixelBox], seen: &mut Seen) {
-        self.bodies.clear();
-        self.bodies.extend_from_slice(cut);
         let (width, height) = (look.image.width(), look.image.height());
         let part = |spacing: usize| (spacing * width / 640).max(2);
         for (axis, spacing, count) in
@@ -63,7 +59,7 @@ impl LineScan {
             self.linked.clear();
             for (scan, at) in (spacing / 2..count).step_by(spacing).enumerate() {
                 let first = seen.line_points.len();
-                self.scan_one(look, border, axis, at, seen);
+                self.scan_one(look, border, cut, axis, at, seen);
                 for index in first..seen.line_points.len() {
                     self.link(seen.line_points[index], axis, scan, spacing);
                 }
@@ -76,7 +72,15 @@ impl LineScan {
     }
 
     /// Finds the line points of a column or row of pixels.
-    fn scan_one(&mut self, look: &Look<'_>, border: &BorderScan, axis: ScanAxis, at: usize, seen: &mut Seen) {
+    fn scan_one(
+        &mut self,
+        look: &Look<'_>,
+        border: &BorderScan,
+        cut: &[PixelBox],
+        axis: ScanAxis,
+        at: usize,
+        seen: &mut Seen,
+    ) {
         let step = look.map.step;
         let (start, end) = match axis {
             ScanAxis::Column => ((border.row(at / step) * step as f32) as usize + 2, look.image.height()),
@@ -116,7 +120,7 @@ impl LineScan {
                 let (begin, finish) = ((start + begin) as f64, (start + fall) as f64);
                 if let Some(point) = line_point(look, axis, pixel, begin, finish, (start, end))
                     && is_on_field(look, border, &point)
-                    && !is_on_object(seen, &self.bodies, &point)
+                    && !is_on_object(seen, cut, &point)
                     && seen.line_points.len() < MOST_POINTS
                 {
                     seen.line_points.push(point);

@@ -276,6 +276,20 @@ impl Random {
         let sum: f64 = (0..12).map(|_| self.uniform(-0.5, 0.5)).sum();
         deviation * sum
     }
+
+    /// The pose of the upper or the lower camera, and whether it is the lower one.
+    fn head(&mut self) -> (HeadPose, bool) {
+        let is_lower = self.uniform(0.0, 1.0) < 0.35;
+        let tilt = if is_lower { 0.64 } else { 0.0 };
+        let head = HeadPose {
+            height: 0.5,
+            torso_roll: self.normal(0.03),
+            torso_pitch: self.normal(0.02),
+            yaw: self.uniform(-0.8, 0.8),
+            pitch: self.uniform(-0.05, 0.35) + tilt,
+        };
+        (head, is_lower)
+    }
 }
 
 /// Where the robot is at the time of an image, and what is around it.
@@ -287,15 +301,7 @@ struct View {
 
 impl View {
     fn choose(random: &mut Random, sequence: &Sequence) -> View {
-        let is_lower = random.uniform(0.0, 1.0) < 0.35;
-        let tilt = if is_lower { 0.64 } else { 0.0 };
-        let head = HeadPose {
-            height: 0.5,
-            torso_roll: random.normal(0.03),
-            torso_pitch: random.normal(0.02),
-            yaw: random.uniform(-0.8, 0.8),
-            pitch: random.uniform(-0.05, 0.35) + tilt,
-        };
+        let (head, is_lower) = random.head();
         let position = Vector2::new(random.uniform(-2.6, 2.6), random.uniform(-1.8, 1.8));
         let field_from_robot = Isometry2::new(position, random.uniform(-3.1, 3.1));
         // Most balls are in view, or nearly.

@@ -1,7 +1,7 @@
 //! Views of robots that are near the camera, most of them cut off by an edge of the image.
 
+use monas_vision::Jersey;
 use monas_vision::render::{FieldMarkings, RobotFigure, Scene};
-use monas_vision::{HeadPose, Jersey};
 use nalgebra::{Isometry2, Point2, Vector2};
 use rand_core::Rng;
 
@@ -10,15 +10,7 @@ use super::{Random, Sequence, View};
 /// A view with one or two robots 0.4 to 1.5 m away. In half of the views a goal is in the direction
 /// of the camera, and in half of them there is a ball.
 pub(super) fn choose(random: &mut Random, sequence: &Sequence) -> View {
-    let is_lower = random.uniform(0.0, 1.0) < 0.35;
-    let tilt = if is_lower { 0.64 } else { 0.0 };
-    let head = HeadPose {
-        height: 0.5,
-        torso_roll: random.normal(0.03),
-        torso_pitch: random.normal(0.02),
-        yaw: random.uniform(-0.8, 0.8),
-        pitch: random.uniform(-0.05, 0.35) + tilt,
-    };
+    let (head, _) = random.head();
     let position = Vector2::new(random.uniform(-2.2, 2.2), random.uniform(-1.6, 1.6));
     let mut turn = random.uniform(-3.1, 3.1);
     if random.uniform(0.0, 1.0) < 0.5 {
