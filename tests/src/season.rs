@@ -275,7 +275,7 @@ impl SeasonTable {
             at_least(
                 "goals of extended attackers against a team that stands still, as a part of plain ones'",
                 self.mean(&ATTACK_STANDING, |row| row.goals[0].into()) / standing.max(1e-9),
-                0.88,
+                1.0,
             ),
             at_least(
                 "part of the goals of extended attackers, with 20 % of the messages lost",

@@ -20,6 +20,7 @@ pub mod lights;
 pub mod localisation;
 pub mod motion;
 pub mod obstacles;
+pub mod opponent_motion;
 pub mod placement;
 mod pose_filter;
 pub mod report_budget;

@@ -14,8 +14,9 @@ use crate::functionality::interception::{Crossing, crossing};
 use crate::functionality::landmarks::{LandmarkSighting, LineSighting};
 use crate::functionality::localisation::{Localisation, LocalisationModel, PoseEstimate};
 use crate::functionality::obstacles::{Obstacle, Obstacles};
+use crate::functionality::opponent_motion::is_evidence;
 use crate::functionality::placement;
-use crate::{Ball, FieldLines, GameState, OtherRobot, Placement, Pose, Robots, convert};
+use crate::{Ball, FieldLines, GameState, OtherRobot, Placement, PlayerState, Pose, Robots, convert};
 
 /// When a ball counts as found and as approaching.
 #[derive(Clone, Copy, Debug)]
@@ -143,10 +144,16 @@ impl Perception {
         if self.ball.correct(of_kind(ObjectKind::Ball).map(convert::ball_sighting), age) {
             self.ball_at = taken_at;
         }
-        self.obstacles.see(of_kind(ObjectKind::Robot).map(|sighting| Obstacle {
-            position: convert::position(&sighting),
-            team_mate: sighting.colour == game.team_colour,
-            seen_at: taken_at,
+        let field_from_robot = self.localisation.as_ref().map(Localisation::field_from_robot);
+        let is_evidence = |position: Point2<f64>| {
+            game.player_state() == PlayerState::Playing
+                && field_from_robot
+                    .is_some_and(|frame| is_evidence(&game.field(), position, frame * position))
+        };
+        self.obstacles.see(of_kind(ObjectKind::Robot).map(|sighting| {
+            let (position, team_mate) = (convert::position(&sighting), sighting.colour == game.team_colour);
+            let is_evidence = !team_mate && is_evidence(position);
+            Obstacle { position, team_mate, seen_at: taken_at, is_evidence }
         }));
     }
 
@@ -221,7 +228,8 @@ impl Perception {
         });
         let robots: Vec<OtherRobot> = robots.collect();
         let distances = robots.iter().map(|robot| robot.position().coords.norm());
-        Robots { nearest: distances.fold(NOBODY, f64::min), robots }
+        let nearest = distances.fold(NOBODY, f64::min);
+        Robots { nearest, robots, opponents_stand: self.obstacles.opponents_stand() }
     }
 
     /// The pose; none before the first placement.

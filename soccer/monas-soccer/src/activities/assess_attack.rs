@@ -3,7 +3,7 @@
 use monas::{Activity, Blackboard, BoxError, Progress, Topics};
 use nalgebra::{Point2, Vector2};
 
-use super::shot::{RobotAndField, ground, others};
+use super::shot::{RobotAndField, ground, opponents_stand, others};
 use crate::functionality::align::Alignment;
 use crate::functionality::attack::{AttackPlayer, AttackRole, AttackSituation, AttackState, evaluate};
 use crate::{Attack, AttackPart, TeamReport, topics};
@@ -48,6 +48,7 @@ impl AssessAttack {
             own,
             mates: &mates,
             opponents: &opponents,
+            opponents_stand: opponents_stand(blackboard),
         };
         let mate_sees_ball = !blackboard.read(topics::BALL).is_some_and(|ball| ball.found);
         Some(Attack { mate_sees_ball, ..message(&evaluate(&scene), own.place) })
@@ -181,7 +182,10 @@ mod tests {
             .publish(topics::GAME_STATE, game)
             .publish(topics::POSE, Pose { x: OWN_X, ..Pose::default() })
             .publish(topics::BALL, ball);
-        stage.publish(topics::ROBOTS, Robots { robots: opponents.iter().map(robot).collect(), nearest: 0.0 });
+        stage.publish(
+            topics::ROBOTS,
+            Robots { robots: opponents.iter().map(robot).collect(), ..Robots::default() },
+        );
         stage.publish(topics::TEAM, Team { own: Some(own), mates: mates.to_vec() });
         assert!(stage.run(&mut AssessAttack::default()));
         stage.latest(topics::ATTACK).unwrap()

@@ -5,7 +5,7 @@ use monas_robot::Skill;
 use nalgebra::Point2;
 
 use super::motion_requests::KickStyle;
-use super::shot::{ground, others};
+use super::shot::{ground, opponents_stand, others};
 use super::skills::{RunningSkill, perform};
 use crate::functionality::ball_filter::BallModel;
 use crate::functionality::field::Goal;
@@ -47,9 +47,10 @@ impl Strength {
     }
 }
 
-/// Whether an opponent is near the ball, which is at a point of the robot's frame.
+/// Whether an opponent is near the ball, which is at a point of the robot's frame, and may move.
 fn is_contested(blackboard: &Blackboard, ball: Point2<f64>) -> bool {
-    others(blackboard).any(|robot| !robot.team_mate && (robot.position() - ball).norm() < CONTESTED)
+    !opponents_stand(blackboard)
+        && others(blackboard).any(|robot| !robot.team_mate && (robot.position() - ball).norm() < CONTESTED)
 }
 
 macro_rules! kick {
@@ -120,8 +121,12 @@ mod tests {
         pose: Option<Pose>,
         robot: OtherRobot,
     ) -> crate::MotionRequest {
+        wanted_among(activity, pose, Robots { robots: vec![robot], ..Robots::default() })
+    }
+
+    fn wanted_among(activity: &mut dyn Activity, pose: Option<Pose>, robots: Robots) -> crate::MotionRequest {
         let mut stage = ActivityFixture::new();
-        stage.publish(topics::ROBOTS, Robots { robots: vec![robot], ..Robots::default() });
+        stage.publish(topics::ROBOTS, robots);
         stage.publish(topics::BALL, Ball { found: true, x: 0.15, y: 0.05, ..Ball::default() });
         let game = GameState { field_length: 6.0, field_width: 4.0, goal_width: 1.4, ..GameState::default() };
         stage.publish(topics::GAME_STATE, game);
@@ -167,5 +172,15 @@ mod tests {
         assert!(is_soft(0.15 + CONTESTED - 0.05, false));
         assert!(!is_soft(0.15 + CONTESTED + 0.05, false), "the opponent is far");
         assert!(!is_soft(0.65, true), "a team mate");
+    }
+
+    #[test]
+    fn an_opponent_that_stands_still_contests_no_ball() {
+        let opponent = OtherRobot { x: 0.65, y: 0.05, ..OtherRobot::default() };
+        for opponents_stand in [false, true] {
+            let robots = Robots { robots: vec![opponent], opponents_stand, ..Robots::default() };
+            let kick = wanted_among(&mut soft(), Some(Pose::default()), robots);
+            assert_eq!(kick.ball_speed > 0.0, !opponents_stand);
+        }
     }
 }

@@ -41,3 +41,8 @@ pub fn target(blackboard: &Blackboard, ball: &Ball, ground: Option<&RobotAndFiel
 pub fn others(blackboard: &Blackboard) -> impl Iterator<Item = &OtherRobot> {
     blackboard.read(topics::ROBOTS).into_iter().flat_map(|robots| &robots.robots)
 }
+
+/// Whether the opponents stand still, so that none will take the ball.
+pub fn opponents_stand(blackboard: &Blackboard) -> bool {
+    blackboard.read(topics::ROBOTS).is_some_and(|robots| robots.opponents_stand)
+}

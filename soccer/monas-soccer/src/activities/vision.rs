@@ -12,7 +12,7 @@ use crate::perception::{Perception, PerceptionModel};
 use crate::{FieldLines, GameState, convert, topics};
 
 /// Filters what the body sees: the ball with its velocity, the robot's pose from goal posts and
-/// lines, the other robots.
+/// lines, the other robots and whether the opponents stand still.
 ///
 /// It reads finished sightings, or images from a body that delivers these. An image is interpreted
 /// with the camera pose from the head joints and the torso's inclination at the time it was taken,

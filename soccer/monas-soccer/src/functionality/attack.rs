@@ -89,6 +89,8 @@ pub struct AttackSituation<'a> {
     pub mates: &'a [AttackPlayer],
     /// Positions of opponents that were seen.
     pub opponents: &'a [Point2<f64>],
+    /// Whether the opponents stand still. Then a shot at once is better than a pass.
+    pub opponents_stand: bool,
 }
 
 /// The state of an attack from the view of the evaluating player.
@@ -222,11 +224,12 @@ fn pass_is_open(scene: &AttackSituation<'_>, receiver: Point2<f64>) -> bool {
     (PASS.0..PASS.1).contains(&way) && faces(scene, receiver) && is_free(scene, receiver)
 }
 
-/// Whether a pass is better than a shot: the goal is far, and the receiver is not behind the ball.
+/// Whether a pass is better than a shot: the goal is far, the receiver is not behind the ball, and
+/// opponents may take a ball that was shot from afar.
 fn pass_pays(scene: &AttackSituation<'_>, receiver: Point2<f64>) -> bool {
     let (shot, pass) = (scene.field.goal(Goal::Opponent) - scene.ball, receiver - scene.ball);
     let aside = wrap(angle_of(&pass) - angle_of(&shot)).abs();
-    shot.norm() > SHOT_LENGTH && aside < ASIDE
+    shot.norm() > SHOT_LENGTH && aside < ASIDE && !scene.opponents_stand
 }
 
 /// Greatest angle between a pass and a shot, radians.
@@ -282,6 +285,7 @@ mod tests {
             own,
             mates,
             opponents,
+            opponents_stand: false,
         }
     }
 
@@ -347,6 +351,14 @@ mod tests {
         let forgotten = AttackPlayer { since_pass: PASSED, ..player(0.9, 0.5) };
         let it = evaluate(&scene(forgotten, &[other], &[]));
         assert!(it.part == Some(AttackRole::CenterFor) && !it.ball_is_passed);
+    }
+
+    #[test]
+    fn against_opponents_that_stand_still_none_passes() {
+        let (own, mates) = (player(-0.4, 0.0), [player(1.2, 0.5)]);
+        let scene = scene(own, &mates, &[]);
+        assert_eq!(evaluate(&scene).part, Some(AttackRole::Center));
+        assert_eq!(evaluate(&AttackSituation { opponents_stand: true, ..scene }).part, None);
     }
 
     #[test]

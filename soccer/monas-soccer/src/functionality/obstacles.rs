@@ -5,6 +5,8 @@ use std::time::Duration;
 use nalgebra::{Isometry2, Point2};
 use narukom::Timestamp;
 
+use super::opponent_motion::OpponentMotion;
+
 /// A robot that was detected.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Obstacle {
@@ -14,6 +16,8 @@ pub struct Obstacle {
     pub team_mate: bool,
     /// When it was last seen.
     pub seen_at: Timestamp,
+    /// Whether it is an opponent whose motion is evidence that its team plays.
+    pub is_evidence: bool,
 }
 
 /// A short-term memory of other robots, transformed by odometry. A robot counts once it was seen
@@ -22,6 +26,7 @@ pub struct Obstacle {
 #[derive(Clone, Debug, Default)]
 pub struct Obstacles {
     seen: Vec<Track>,
+    motion: OpponentMotion,
 }
 
 #[derive(Clone, Debug)]
@@ -30,6 +35,9 @@ struct Track {
     is_confirmed: bool,
     /// Number of pictures since it was last seen.
     unseen: u32,
+    /// Where and when the window began in which its motion is judged.
+    window_position: Point2<f64>,
+    window_start: Timestamp,
 }
 
 /// Distance within which two sightings of one colour are the same robot, metres.
@@ -38,6 +46,10 @@ const SAME: f64 = 0.4;
 const MEMORY: Duration = Duration::from_millis(1500);
 /// Number of pictures in which a robot must be seen again.
 const CONFIRMATION: u32 = 4;
+/// The time in which a robot that plays moves farther than `MOVED`.
+pub const WINDOW: Duration = Duration::from_secs(2);
+/// Displacement that no error of a measured position explains, metres.
+const MOVED: f64 = 0.4;
 /// Greatest number of robots on a field.
 const MOST: usize = 16;
 
@@ -46,8 +58,9 @@ impl Obstacles {
     /// old.
     pub fn advance(&mut self, now: Timestamp, old_from_new: &Isometry2<f64>) {
         self.seen.retain(|track| now.since(track.obstacle.seen_at) <= MEMORY);
-        for Track { obstacle, .. } in &mut self.seen {
+        for Track { obstacle, window_position, .. } in &mut self.seen {
             obstacle.position = old_from_new.inverse_transform_point(&obstacle.position);
+            *window_position = old_from_new.inverse_transform_point(window_position);
         }
     }
 
@@ -66,14 +79,19 @@ impl Obstacles {
             |known: &&mut Track| known.obstacle.team_mate == sighting.team_mate && distance(known) < SAME;
         let same = self.seen.iter_mut().filter(is_same);
         match same.min_by(|a, b| distance(a).total_cmp(&distance(b))) {
-            // A second sighting in the same picture confirms nothing.
             Some(known) => {
-                let is_confirmed = known.is_confirmed || known.unseen > 0;
-                *known = Track { obstacle: sighting, is_confirmed, unseen: 0 };
+                if let Some(moved) = known.update(sighting) {
+                    self.motion.observe(moved);
+                }
             }
-            None if !full => self.seen.push(Track { obstacle: sighting, is_confirmed: false, unseen: 0 }),
+            None if !full => self.seen.push(Track::new(sighting)),
             None => {}
         }
+    }
+
+    /// Whether the opponents that were watched in play nearly never moved.
+    pub fn opponents_stand(&self) -> bool {
+        self.motion.stand()
     }
 
     /// Removes all robots.
@@ -87,6 +105,32 @@ impl Obstacles {
     }
 }
 
+impl Track {
+    fn new(obstacle: Obstacle) -> Track {
+        Track {
+            obstacle,
+            is_confirmed: false,
+            unseen: 0,
+            window_position: obstacle.position,
+            window_start: obstacle.seen_at,
+        }
+    }
+
+    /// Takes the next sighting. At the end of a window in which the robot was watched, returns
+    /// whether it has moved.
+    fn update(&mut self, sighting: Obstacle) -> Option<bool> {
+        // A second sighting in the same picture confirms nothing.
+        self.is_confirmed |= self.unseen > 0;
+        (self.obstacle, self.unseen) = (sighting, 0);
+        let moved = (sighting.position - self.window_position).norm() > MOVED;
+        let is_judged = moved || sighting.seen_at.since(self.window_start) > WINDOW;
+        if is_judged || !sighting.is_evidence {
+            (self.window_position, self.window_start) = (sighting.position, sighting.seen_at);
+        }
+        (is_judged && sighting.is_evidence && self.is_confirmed).then_some(moved)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -94,7 +138,7 @@ mod tests {
 
     fn robot(x: f64, y: f64, team_mate: bool, millis: u64) -> Obstacle {
         let seen_at = Timestamp::from_nanos(millis * 1_000_000);
-        Obstacle { position: Point2::new(x, y), team_mate, seen_at }
+        Obstacle { position: Point2::new(x, y), team_mate, seen_at, is_evidence: !team_mate }
     }
 
     /// Shows the same robots in two pictures.
@@ -135,6 +179,36 @@ mod tests {
         assert!((obstacles.iter().next().unwrap().position - Point2::new(0.8, 0.0)).norm() < 1e-12);
         obstacles.advance(Timestamp::from_nanos(2_000_000_000), &Isometry2::identity());
         assert_eq!(obstacles.iter().count(), 0);
+    }
+
+    /// Whether opponents stand, one of which is seen for 20 s ten times a second.
+    fn stands(place: impl Fn(f64) -> (f64, f64), is_evidence: bool) -> bool {
+        let mut obstacles = Obstacles::default();
+        for picture in 0..200_u32 {
+            let (x, y) = place(f64::from(picture) * 0.1);
+            let sighting = Obstacle { is_evidence, ..robot(x, y, false, u64::from(picture) * 100) };
+            obstacles.see([sighting].into_iter());
+        }
+        obstacles.opponents_stand()
+    }
+
+    #[test]
+    fn opponents_stand_if_the_one_in_sight_does_not_move() {
+        let noise = |time: f64| 0.1 * libm::sin(time * 7.0);
+        assert!(stands(|time| (1.0 + noise(time), 0.3), true));
+        assert!(!stands(|time| (1.0 + noise(time), 0.25 * time), true), "it walks");
+        assert!(!stands(|time| (1.0 + noise(time), 0.3), false), "a goalkeeper");
+    }
+
+    #[test]
+    fn a_robot_that_is_walked_past_stands() {
+        let mut obstacles = Obstacles::default();
+        for picture in 0..200_u32 {
+            let x = 3.0 - 0.02 * f64::from(picture);
+            obstacles.advance(Timestamp::from_nanos(u64::from(picture) * 100_000_000), &pose(0.02, 0.0, 0.0));
+            obstacles.see([robot(x, 0.5, false, u64::from(picture) * 100)].into_iter());
+        }
+        assert!(obstacles.opponents_stand());
     }
 
     #[test]
