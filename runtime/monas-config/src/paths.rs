@@ -2,7 +2,7 @@
 
 use std::fs;
 use std::io::{self, Read};
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
 use yase::diagnostic::nearest;
@@ -104,7 +104,9 @@ fn unreadable(code: &'static str, name: &str, message: String) -> Box<Diagnostic
 /// # Errors
 /// The path of a file with a similar name, if there is one.
 pub fn locate(path: &Path, named: &str) -> Result<PathBuf, Option<String>> {
-    let candidates: Vec<PathBuf> = path.ancestors().skip(1).map(|folder| folder.join(named)).collect();
+    let working_folder = std::env::current_dir().unwrap_or_default();
+    let candidates: Vec<PathBuf> =
+        folders_of(path, &working_folder).into_iter().map(|folder| folder.join(named)).collect();
     match candidates.iter().find(|candidate| candidate.is_file()) {
         Some(found) => Ok(found.clone()),
         None => {
@@ -113,6 +115,21 @@ pub fn locate(path: &Path, named: &str) -> Result<PathBuf, Option<String>> {
             Err(name.map(|name| Path::new(named).with_file_name(name).display().to_string()))
         }
     }
+}
+
+/// The folder of a file and all parents of that folder, the innermost first. For a relative path,
+/// those above the working folder are `..`, `../..` and so on.
+fn folders_of(path: &Path, working_folder: &Path) -> Vec<PathBuf> {
+    let mut folders: Vec<PathBuf> = path.ancestors().skip(1).map(Path::to_owned).collect();
+    if path.is_relative() {
+        let upwards = path.components().take_while(|part| *part == Component::ParentDir).count();
+        // What remains of `../..` without its last part is no parent of it.
+        folders.truncate(folders.len().saturating_sub(upwards));
+        let depth = working_folder.ancestors().skip(1).count();
+        let above = (upwards + 1..=depth).map(|parents| PathBuf::from_iter(vec![".."; parents]));
+        folders.extend(above);
+    }
+    folders
 }
 
 /// The file in the same folder with the most similar name.
@@ -136,6 +153,19 @@ fn files_in(folder: &Path) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn all_parents_of_a_file_are_searched() {
+        let folders = |path: &str, working_folder: &str| -> Vec<String> {
+            let folders = folders_of(Path::new(path), Path::new(working_folder));
+            folders.iter().map(|folder| folder.display().to_string()).collect()
+        };
+        assert_eq!(folders("/p/config/m.xml", "/elsewhere"), ["/p/config", "/p", "/"]);
+        assert_eq!(folders("config/roles/r.xml", "/p"), ["config/roles", "config", "", ".."]);
+        assert_eq!(folders("m.xml", "/p/config"), ["", "..", "../.."]);
+        assert_eq!(folders("../models/m.srm", "/p/config"), ["../models", "..", "../.."]);
+        assert_eq!(folders("../../m.srm", "/a/b/c"), ["../..", "../../.."]);
+    }
 
     #[test]
     fn a_file_that_is_too_large_is_refused() {

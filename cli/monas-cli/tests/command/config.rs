@@ -5,7 +5,7 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use crate::kit::{Answer, changed, monas, root};
+use crate::kit::{Answer, changed, command, monas, root};
 
 fn show(arguments: &[&str]) -> Answer {
     monas(&[&["config", "show"], arguments].concat())
@@ -58,6 +58,19 @@ fn every_value_is_shown_with_its_origin() {
     let check = monas(&["config", "check", &file]);
     assert_eq!(check.code, Some(3));
     assert!(check.err.contains("unknown activity `Unregistered`"), "{}", check.err);
+}
+
+#[test]
+fn a_match_is_the_same_from_every_folder() {
+    let hash_from = |folder: &str, file: &str| {
+        let mut run = command(&["run", file, "--for", "2s", "--seed", "3"]);
+        let run: Answer = run.current_dir(root().join(folder)).output().expect("the command starts").into();
+        assert_eq!(run.code, Some(0), "from `{folder}`: {}", run.err);
+        run.out.lines().find(|line| line.starts_with("hash")).expect("a hash").to_owned()
+    };
+    let hash = hash_from("", "config/match.xml");
+    assert_eq!(hash_from("config", "match.xml"), hash);
+    assert_eq!(hash_from("config/roles", "../match.xml"), hash);
 }
 
 #[test]
