@@ -656,6 +656,7 @@ async function cameras(browser) {
       const shown = [...document.querySelectorAll('.camera img')];
       return shown.length === 2 && shown.every((image) => image.complete && image.naturalWidth === 320);
     });
+    await until(page, 'the end of the tape', () => document.querySelector('.play')?.textContent === 'Play');
     // the lines that the chosen robot sees lie on those of the field
     await until(page, 'lines that are seen', () => document.querySelectorAll('line.seen').length >= 3);
     const away = await page.evaluate(() => {
