@@ -9,7 +9,7 @@ use yase::{Diagnostic, Source};
 
 fuzz_target!(|text: &str| {
     let anatomy = monas_nao::anatomy();
-    let (poses, findings) = poses::read(&Source::new("poses.xml", text), &anatomy);
+    let (poses, findings) = poses::read(&Source::new("poses.xml", text), anatomy);
     assert_findings_fit(text, &findings);
     assert_eq!(poses.is_none(), findings.iter().any(Diagnostic::is_error), "{findings:?}");
     for pose in poses.iter().flatten() {

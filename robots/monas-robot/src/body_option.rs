@@ -34,7 +34,9 @@ pub enum OptionKind {
     File,
     /// A file with a sequence of poses of the joints of this anatomy, named like other files. It is
     /// checked with the configuration.
-    Poses(fn() -> Anatomy),
+    Poses(fn() -> &'static Anatomy),
+    /// A file in URDF of a robot that is built like this one. It is checked with the configuration.
+    Anatomy(fn() -> &'static Anatomy),
 }
 
 /// What is wrong with the settings of a body, at one of its attributes.
@@ -100,7 +102,9 @@ impl OptionKind {
                 value.parse().is_ok_and(|number| (least..=most).contains(&number))
             }
             OptionKind::Flag => matches!(value, "0" | "1" | "false" | "true"),
-            OptionKind::Text | OptionKind::File | OptionKind::Poses(_) => !value.is_empty(),
+            OptionKind::Text | OptionKind::File | OptionKind::Poses(_) | OptionKind::Anatomy(_) => {
+                !value.is_empty()
+            }
         }
     }
 
@@ -114,13 +118,17 @@ impl OptionKind {
             OptionKind::Whole(least, most) => format!("a whole number from {least} to {most}"),
             OptionKind::Number(least, most) => format!("a number from {least} to {most}"),
             OptionKind::Flag => "`0` or `1`".to_owned(),
-            OptionKind::File | OptionKind::Poses(_) => "the path of a file".to_owned(),
+            OptionKind::File | OptionKind::Poses(_) | OptionKind::Anatomy(_) => {
+                "the path of a file".to_owned()
+            }
         }
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use std::sync::LazyLock;
+
     use super::*;
 
     fn check(kind: OptionKind, value: &str) -> Result<(), String> {
@@ -129,7 +137,8 @@ mod tests {
 
     #[test]
     fn values_are_of_the_kind_of_the_option_or_refused() {
-        let anatomy = || Anatomy::new("none", std::time::Duration::from_millis(10));
+        static NONE: LazyLock<Anatomy> =
+            LazyLock::new(|| Anatomy::new("none", std::time::Duration::from_millis(10)));
         for (kind, right, wrong) in [
             (OptionKind::Text, &["a b", "é"][..], &[""][..]),
             (OptionKind::Name, &["a_b-1"], &["", "a b", "A) (B", "é"]),
@@ -138,7 +147,8 @@ mod tests {
             (OptionKind::Number(-1.0, 2.5), &["-1", "2.5", "1e0"], &["", "-1.1", "2.6", "NaN", "inf", "x"]),
             (OptionKind::Flag, &["0", "1", "true", "false"], &["", "2", "yes"]),
             (OptionKind::File, &["walk.toml"], &[""]),
-            (OptionKind::Poses(anatomy), &["kick.xml"], &[""]),
+            (OptionKind::Poses(|| &NONE), &["kick.xml"], &[""]),
+            (OptionKind::Anatomy(|| &NONE), &["nao.urdf"], &[""]),
         ] {
             for value in right {
                 assert_eq!(check(kind, value), Ok(()), "{kind:?}");

@@ -2,7 +2,9 @@
 
 use narukom::Timestamp;
 
-use crate::{Actuators, ErrorKind, JointCommands, Joints, Percepts, Posture, Robot, Sensors, SkillResult};
+use crate::{
+    Actuators, Anatomy, ErrorKind, JointCommands, Joints, Percepts, Posture, Robot, Sensors, SkillResult,
+};
 
 /// How far a measured joint may lie beyond its limits, radians: the encoders are not perfect.
 const JOINT_TOLERANCE: f64 = 0.02;
@@ -14,8 +16,8 @@ const JOINT_TOLERANCE: f64 = 0.02;
 /// If a requirement is violated; the message names it. The suite is for tests.
 #[allow(clippy::panic)] // a test suite reports failures by panicking
 pub fn check(robot: &mut dyn Robot) {
+    check_anatomy(robot.anatomy());
     let cycle = robot.anatomy().cycle;
-    assert!(!cycle.is_zero(), "the cycle of a body takes time");
     let mut now = Timestamp::from_nanos(0);
     let mut percepts = Percepts::default();
     for command in commands() {
@@ -30,6 +32,30 @@ pub fn check(robot: &mut dyn Robot) {
     }
     now = move_joints(robot, now);
     come_to_rest(robot, now);
+}
+
+/// Checks that the parts of an anatomy fit each other.
+fn check_anatomy(anatomy: &Anatomy) {
+    assert!(!anatomy.cycle.is_zero(), "the cycle of a body takes time");
+    for joint in &anatomy.joints {
+        assert!(joint.limits.low <= joint.limits.high, "`{}` has no range", joint.name);
+    }
+    for (index, link) in anatomy.links.iter().enumerate() {
+        let is_carried = match link.parent {
+            Some(parent) => parent < index,
+            None => index == 0,
+        };
+        assert!(is_carried, "`{}` comes before the link that carries it", link.name);
+        let joint = link.motion.map(|motion| motion.joint);
+        assert!(joint.is_none_or(|joint| joint < anatomy.joints.len()), "no joint moves `{}`", link.name);
+    }
+    for camera in &anatomy.cameras {
+        let is_at_link = camera.link.is_none_or(|link| link < anatomy.links.len());
+        assert!(
+            is_at_link && camera.horizontal > 0.0 && camera.vertical > 0.0,
+            "it sees nothing: {camera:?}"
+        );
+    }
 }
 
 /// Checks that joints stay within their limits whatever is commanded, and that commands without a

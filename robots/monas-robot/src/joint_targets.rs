@@ -74,13 +74,7 @@ mod tests {
     use crate::Joint;
 
     fn anatomy() -> Anatomy {
-        let joint = |name| Joint {
-            name,
-            limits: Limits::new(-0.5, 1.0),
-            parent: None,
-            offset: [0.0; 3],
-            axis: [0.0, 0.0, 1.0],
-        };
+        let joint = |name: &str| Joint { name: name.to_owned(), limits: Limits::new(-0.5, 1.0), speed: None };
         let joints = vec![joint("first"), joint("second")];
         Anatomy { joints, ..Anatomy::new("two joints", Duration::from_millis(10)) }
     }

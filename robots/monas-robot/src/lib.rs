@@ -10,10 +10,10 @@
 //! independent of the robot it runs on: a disk on the embedded field, a humanoid on a physics
 //! server, or a Nao.
 //!
-//! The capabilities of a body are described by its [`Anatomy`]: joints with their limits, the
-//! camera's field of view, the named [skills](Skill). A configuration names a body by its
-//! [`BodyKind`], which [`body_kind!`] registers. [`conformance::check`] is the test suite that
-//! every body has to pass.
+//! The capabilities of a body are described by its [`Anatomy`]: joints with their limits, links,
+//! cameras, the named [skills](Skill). `monas_config::urdf` reads it from a file. A configuration
+//! names a body by its [`BodyKind`], which [`body_kind!`] registers. [`conformance::check`] is the
+//! test suite that every body has to pass.
 //!
 //! ```
 //! use std::time::Duration;
@@ -52,7 +52,7 @@ mod wrapped_body;
 
 narukom::include_messages!("monas.robot");
 
-pub use anatomy::{Anatomy, Camera, Joint, Limits};
+pub use anatomy::{Anatomy, Camera, Joint, Limits, Link, LinkMotion};
 pub use body_kind::{
     BodyKind, BodyLimit, BodySettings, BodySite, CameraOutput, Capability, IMAGE_WIDTHS, OpenBody,
     Surroundings,

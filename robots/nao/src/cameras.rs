@@ -9,7 +9,6 @@ use std::time::Duration;
 use monas_robot::{BodyFault, Error, Image, Images, ObjectSet};
 use narukom::Timestamp;
 
-use crate::anatomy;
 use crate::camera_thread::{CameraThread, monotonic_time};
 use crate::frame::{Frame, HEIGHT, WIDTH};
 use crate::kinematics::{self, JointAngles, NaoCamera, Side};
@@ -174,7 +173,7 @@ fn image(camera: NaoCamera, frame: Frame, angles: &JointAngles) -> Image {
     Image {
         width: WIDTH as u32,
         height: HEIGHT as u32,
-        angle_of_view: anatomy::VIEW[0],
+        angle_of_view: camera.description().horizontal,
         camera_height: height - ground[0].min(ground[1]),
         camera_tilt: kinematics::camera_tilt(camera),
         pixels: frame.pixels,
@@ -300,7 +299,7 @@ mod tests {
         assert!((top.camera_height - 0.498).abs() < 0.001, "{}", top.camera_height);
         assert!((bottom.camera_height - 0.452).abs() < 0.001, "{}", bottom.camera_height);
         assert!((top.camera_tilt - 0.0209).abs() < 1e-4 && (bottom.camera_tilt - 0.6929).abs() < 1e-4);
-        angles[anatomy::NaoJoint::HeadPitch as usize] = 0.4;
+        angles[crate::NaoJoint::HeadPitch as usize] = 0.4;
         let looking_down = message(7, [Some(frame(1)), None], &angles);
         assert_eq!(looking_down.images.len(), 1);
         assert!(looking_down.images[0].camera_height < top.camera_height - 0.02);

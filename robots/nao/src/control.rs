@@ -1,13 +1,15 @@
 //! What a Nao does in each cycle: commands in the plane and of joints become an actuator packet,
 //! sensor packets become percepts.
 
+use std::collections::BTreeMap;
+
 use monas_robot::{
     Actuators, Anatomy, Battery, Contacts, Error, FallDetector, Inertial, JointCommands, JointTargets,
     Joints, Leds, Percepts, Posture, Sensors, Skill, SkillResult, Sonar,
 };
 use narukom::Timestamp;
 
-use crate::anatomy::{self, NaoJoint, limits};
+use crate::anatomy::{NaoJoint, anatomy_of};
 use crate::kinematics::JointAngles;
 use crate::leds;
 use crate::lola::{ActuatorPacket, CYCLE_SECONDS, JOINTS, SensorPacket, Touch};
@@ -64,11 +66,15 @@ pub(crate) struct NaoControl {
 }
 
 impl NaoControl {
-    pub(crate) fn new(actions: SpecialActions) -> NaoControl {
-        NaoControl {
-            anatomy: anatomy::anatomy(),
+    /// With the files that the options of a configuration name, otherwise the built-in ones.
+    ///
+    /// # Errors
+    /// A file cannot be read or has errors; the message has its first one.
+    pub(crate) fn of(options: &BTreeMap<String, String>) -> Result<NaoControl, Error> {
+        Ok(NaoControl {
+            anatomy: anatomy_of(options)?,
+            actions: SpecialActions::of(options)?,
             walk: Box::new(SteppingWalk::default()),
-            actions,
             activity: Activity::Waiting,
             commands: Actuators::default(),
             skill_number: 0,
@@ -83,7 +89,7 @@ impl NaoControl {
             angles: stand(),
             odometry: [0.0; 3],
             packet: ActuatorPacket::default(),
-        }
+        })
     }
 
     pub(crate) fn set_walk(&mut self, walk: Box<dyn WalkEngine>) {
@@ -130,7 +136,10 @@ impl NaoControl {
         let (stiffness, is_echo) = self.advance();
         for joint in 0..JOINTS {
             let command = self.targets.of(joint).filter(|_| matches!(self.activity, Activity::Active { .. }));
-            let (target, stiffness) = command.unwrap_or((limits(joint).clamp(self.angles[joint]), stiffness));
+            let (target, stiffness) = command.unwrap_or_else(|| {
+                let limits = self.anatomy.joints[joint].limits;
+                (limits.clamp(self.angles[joint]), stiffness)
+            });
             // A joint without stiffness is given the angle that it has.
             self.packet.position[joint] = if is_echo { self.sensors.position[joint] } else { target as f32 };
             self.packet.stiffness[joint] = stiffness as f32;
@@ -157,7 +166,11 @@ impl NaoControl {
             Activity::Active { skill: None } => {
                 self.move_head();
                 let Actuators { walk_x, walk_y, walk_turn, .. } = self.commands;
-                let mut velocity = WalkVelocity { x: walk_x, y: walk_y, turn: walk_turn };
+                let mut velocity = WalkVelocity {
+                    x: self.anatomy.walk_x.clamp(walk_x),
+                    y: self.anatomy.walk_y.clamp(walk_y),
+                    turn: self.anatomy.walk_turn.clamp(walk_turn),
+                };
                 if falls.is_inclined() {
                     self.walk.stop();
                     velocity = WalkVelocity::STILL;

@@ -5,13 +5,35 @@
 //! that of a foot is on its sole, below the ankle. One motor turns both hips about axes inclined by
 //! 45 degrees, so that the feet turn inwards or outwards together.
 
+use monas_robot::Camera;
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, UnitVector3, Vector3};
 
-use crate::anatomy::{
-    ELBOW_Y, FOOT_HEIGHT, HAND, HIP, HIP_YAW_PITCH, LOWER_ARM, NECK_Z, NaoJoint, SHOULDER, THIGH, TIBIA,
-    UPPER_ARM,
-};
+use crate::anatomy::{NaoJoint, anatomy};
 use crate::lola::JOINTS;
+
+/// From the torso up to the neck, m. This and the following lengths are those of the
+/// [`anatomy`](crate::anatomy()); a test compares them.
+const NECK_Z: f64 = 0.1265;
+/// From the torso to the left shoulder.
+const SHOULDER: Vector3<f64> = Vector3::new(0.0, 0.098, 0.1);
+/// From the shoulder to the elbow.
+const UPPER_ARM: f64 = 0.105;
+/// From the shoulder to the elbow, to the side.
+const ELBOW_Y: f64 = 0.015;
+/// From the elbow to the wrist.
+const LOWER_ARM: f64 = 0.055_95;
+/// From the wrist to the hand.
+const HAND: Vector3<f64> = Vector3::new(0.057_75, 0.0, -0.012_31);
+/// From the torso to the left hip.
+pub(crate) const HIP: Vector3<f64> = Vector3::new(0.0, 0.05, -0.085);
+/// From the hip to the knee.
+const THIGH: f64 = 0.1;
+/// From the knee to the ankle.
+const TIBIA: f64 = 0.1029;
+/// From the ankle down to the sole.
+const FOOT_HEIGHT: f64 = 0.045_19;
+/// The axis of the left hip's yaw and pitch joint; the right one has its z reversed.
+const HIP_YAW_PITCH: [f64; 3] = [0.0, std::f64::consts::FRAC_1_SQRT_2, -std::f64::consts::FRAC_1_SQRT_2];
 
 /// The angles of all joints, rad, in the order of LoLA.
 pub type JointAngles = [f64; JOINTS];
@@ -104,25 +126,23 @@ fn wrist_in_torso(side: Side, angles: &JointAngles) -> Isometry3<f64> {
         * Translation3::new(LOWER_ARM, 0.0, 0.0)
 }
 
+impl NaoCamera {
+    /// The camera in the anatomy.
+    pub fn description(self) -> &'static Camera {
+        &anatomy().cameras[self as usize]
+    }
+}
+
 /// The pose of a camera in the torso's frame; x is its line of sight.
 pub fn camera_in_torso(camera: NaoCamera, angles: &JointAngles) -> Isometry3<f64> {
-    let offset = match camera {
-        NaoCamera::Top => Vector3::new(0.058_71, 0.0, 0.063_64),
-        NaoCamera::Bottom => Vector3::new(0.050_71, 0.0, 0.017_74),
-    };
-    Translation3::new(0.0, 0.0, NECK_Z)
-        * yaw(angles[NaoJoint::HeadYaw as usize])
-        * pitch(angles[NaoJoint::HeadPitch as usize])
-        * Translation3::from(offset)
-        * pitch(camera_tilt(camera))
+    let link = camera.description().link.unwrap_or_default();
+    anatomy().pose_in_torso(link, Isometry3::identity(), angles)
 }
 
 /// How much lower a camera looks than the head, rad.
 pub fn camera_tilt(camera: NaoCamera) -> f64 {
-    match camera {
-        NaoCamera::Top => 1.2_f64.to_radians(),
-        NaoCamera::Bottom => 39.7_f64.to_radians(),
-    }
+    let sight = camera_in_torso(camera, &[0.0; JOINTS]).rotation * Vector3::x();
+    -libm::asin(sight.z)
 }
 
 /// Sets yaw and pitch of the head so that the line from the neck through the head points at `point`
@@ -235,7 +255,7 @@ pub fn heading(pose: &Isometry3<f64>) -> f64 {
 }
 
 /// The rotation of a hip by the shared joint.
-pub(crate) fn hip_rotation(side: Side, angle: f64) -> UnitQuaternion<f64> {
+fn hip_rotation(side: Side, angle: f64) -> UnitQuaternion<f64> {
     let [x, y, z] = HIP_YAW_PITCH;
     about(Vector3::new(x, y, side.sign() * z), angle)
 }
@@ -247,11 +267,11 @@ fn about(axis: Vector3<f64>, angle: f64) -> UnitQuaternion<f64> {
     UnitQuaternion::new_unchecked(nalgebra::Quaternion::from_parts(cos, axis.into_inner() * sin))
 }
 
-pub(crate) fn roll(angle: f64) -> UnitQuaternion<f64> {
+fn roll(angle: f64) -> UnitQuaternion<f64> {
     about(Vector3::x(), angle)
 }
 
-pub(crate) fn pitch(angle: f64) -> UnitQuaternion<f64> {
+fn pitch(angle: f64) -> UnitQuaternion<f64> {
     about(Vector3::y(), angle)
 }
 
@@ -259,11 +279,11 @@ pub(crate) fn yaw(angle: f64) -> UnitQuaternion<f64> {
     about(Vector3::z(), angle)
 }
 
-pub(crate) fn down(length: f64) -> Translation3<f64> {
+fn down(length: f64) -> Translation3<f64> {
     Translation3::new(0.0, 0.0, -length)
 }
 
-pub(crate) fn mirrored(left: Vector3<f64>, side: Side) -> Vector3<f64> {
+fn mirrored(left: Vector3<f64>, side: Side) -> Vector3<f64> {
     Vector3::new(left.x, side.sign() * left.y, left.z)
 }
 
@@ -307,6 +327,24 @@ mod tests {
     }
 
     proptest! {
+        #[test]
+        fn feet_hands_and_neck_are_where_the_anatomy_has_them(angles in angles()) {
+            let check = |side: &str, link: &str, pose: Isometry3<f64>| {
+                let link = anatomy().link(&[side, link].concat()).unwrap();
+                let other = anatomy().pose_in_torso(link, Isometry3::identity(), &angles);
+                let apart = (pose.translation.vector - other.translation.vector).norm();
+                apart.max(pose.rotation.angle_to(&other.rotation)) < 1e-7 && apart < 1e-12
+            };
+            for (side, letter) in [(Side::Left, "L"), (Side::Right, "R")] {
+                prop_assert!(check(letter, "Sole", foot_in_torso(side, &angles)));
+                let mut open = hand_in_torso(side, &angles);
+                open.rotation *= pitch(angles[if side == Side::Left { 23 } else { 24 }]);
+                prop_assert!(check(letter, "Fingers", open));
+            }
+            let neck = Isometry3::from_parts(Translation3::new(0.0, 0.0, NECK_Z), yaw(angles[0]));
+            prop_assert!(check("", "Neck", neck));
+        }
+
         #[test]
         fn the_inverse_of_a_leg_reaches_the_foot_that_the_angles_gave(given in angles(), left: bool) {
             let side = if left { Side::Left } else { Side::Right };

@@ -10,7 +10,7 @@
 //! The commands in the plane, which all bodies have, become joint targets here: a [`WalkEngine`]
 //! turns velocities into steps, skills are motions of the joints through the poses of a file, see
 //! [`poses`](monas_config::poses), and odometry follows from the foot on the ground by the
-//! [`kinematics`] of the legs. [`mass`] has the centre of mass.
+//! [`kinematics`] of the legs. The [`anatomy`](anatomy()) is read from the file `nao.urdf`.
 //!
 //! # Limits
 //!
@@ -40,7 +40,6 @@ mod frame;
 pub mod kinematics;
 mod leds;
 pub mod lola;
-pub mod mass;
 mod motions;
 mod nao;
 mod options;
@@ -123,14 +122,14 @@ fn has_cameras(settings: &BodySettings, surroundings: Surroundings) -> bool {
 
 /// Opens a Nao: in a simulated world over its body there, else at a socket.
 fn open(site: BodySite) -> Result<Box<dyn Robot>, monas_robot::Error> {
-    let actions = motions::SpecialActions::of(&site.options)?;
+    let control = control::NaoControl::of(&site.options)?;
     match site {
         BodySite { simulated: Some(body), address: None, .. } => {
-            Ok(Box::new(SimulatedNao::with_actions(body, actions)?))
+            Ok(Box::new(SimulatedNao::with_control(body, control)?))
         }
         BodySite { address, options, .. } => {
             let path = Path::new(address.as_deref().unwrap_or(lola::SOCKET));
-            Ok(Box::new(Nao::with_actions(path, actions)?.with_cameras(CameraPlaces::of(&options))))
+            Ok(Box::new(Nao::connect(path, control)?.with_cameras(CameraPlaces::of(&options))))
         }
     }
 }

@@ -40,8 +40,8 @@ impl SpecialActions {
     /// A file cannot be read or has errors; the message has its first one.
     pub(crate) fn of(options: &BTreeMap<String, String>) -> Result<SpecialActions, Error> {
         let action = |option: &str, built_in| match options.get(option) {
-            Some(path) => checked(poses::load(Path::new(path), &anatomy())),
-            None => checked(poses::read(&Source::new(format!("{option}.xml"), built_in), &anatomy())),
+            Some(path) => checked(poses::load(Path::new(path), anatomy())),
+            None => checked(poses::read(&Source::new(format!("{option}.xml"), built_in), anatomy())),
         };
         Ok(SpecialActions {
             kick: action(KICK, include_str!("../motions/kick.xml"))?,

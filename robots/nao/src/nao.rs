@@ -12,7 +12,6 @@ use narukom::Timestamp;
 use crate::cameras::{self, CameraPlaces, Cameras};
 use crate::control::NaoControl;
 use crate::lola::SensorPacket;
-use crate::motions::SpecialActions;
 use crate::side_channels::RobotChannels;
 use crate::simulated_nao::say;
 use crate::socket::Socket;
@@ -74,19 +73,15 @@ impl Nao {
     /// # Errors
     /// As in [`open`](Nao::open).
     pub fn with_walk(path: &Path, walk: Option<Box<dyn WalkEngine>>) -> Result<Nao, Error> {
-        let mut control = NaoControl::new(SpecialActions::of(&BTreeMap::new())?);
+        let mut control = NaoControl::of(&BTreeMap::new())?;
         if let Some(walk) = walk {
             control.set_walk(walk);
         }
         Nao::connect(path, control)
     }
 
-    /// As [`open`](Nao::open), with these special actions.
-    pub(crate) fn with_actions(path: &Path, actions: SpecialActions) -> Result<Nao, Error> {
-        Nao::connect(path, NaoControl::new(actions))
-    }
-
-    fn connect(path: &Path, control: NaoControl) -> Result<Nao, Error> {
+    /// As [`open`](Nao::open), with this control.
+    pub(crate) fn connect(path: &Path, control: NaoControl) -> Result<Nao, Error> {
         let state = ControlState {
             control,
             is_connected: false,

@@ -2,7 +2,7 @@
 
 use monas_robot::{BodyOption, OptionKind};
 
-use crate::anatomy::anatomy;
+use crate::anatomy::{ANATOMY, anatomy};
 use crate::cameras::{BOTTOM, TODAY, TOP, TURNED};
 use crate::motions::{DIVE, FALL, KICK, STAND_UP};
 
@@ -22,6 +22,11 @@ pub(crate) const OPTIONS: &[BodyOption] = &[
         TODAY,
         OptionKind::Flag,
         "`1` if the ball is black and white and the goals are white; by default they are of 2010",
+    ),
+    option(
+        ANATOMY,
+        OptionKind::Anatomy(anatomy),
+        "a file in URDF: limits, speeds, masses and ranges of the walk of this robot",
     ),
     option(KICK, POSES, "a file of poses: the kick with the left foot, mirrored for the right one"),
     option(FALL, POSES, "a file of poses: the fall to the left, mirrored for the right"),

@@ -24,8 +24,9 @@ impl ServedNao {
     /// # Errors
     /// The path cannot be bound.
     pub fn listen(path: &Path, body: Box<dyn Robot>) -> Result<ServedNao, Error> {
-        // Joints and lights are at the other end.
-        let anatomy = Anatomy { joints: Vec::new(), has_leds: false, ..anatomy() };
+        // Joints, links, cameras and lights are at the other end.
+        let (joints, links, cameras) = (Vec::new(), Vec::new(), Vec::new());
+        let anatomy = Anatomy { joints, links, cameras, has_leds: false, ..anatomy().clone() };
         Ok(ServedNao { server: LolaServer::listen(path, body)?, anatomy })
     }
 }

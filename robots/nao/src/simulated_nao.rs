@@ -7,7 +7,6 @@ use narukom::Timestamp;
 
 use crate::control::NaoControl;
 use crate::lola::SensorPacket;
-use crate::motions::SpecialActions;
 use crate::server::LolaServer;
 use crate::side_channels::{self, RobotChannels};
 use crate::socket::Socket;
@@ -32,15 +31,14 @@ impl SimulatedNao {
     /// # Errors
     /// The sockets cannot be created.
     pub fn new(body: Box<dyn Robot>) -> Result<SimulatedNao, Error> {
-        SimulatedNao::with_actions(body, SpecialActions::of(&BTreeMap::new())?)
+        SimulatedNao::with_control(body, NaoControl::of(&BTreeMap::new())?)
     }
 
-    /// As [`new`](SimulatedNao::new), with these special actions.
-    pub(crate) fn with_actions(body: Box<dyn Robot>, actions: SpecialActions) -> Result<SimulatedNao, Error> {
+    /// As [`new`](SimulatedNao::new), with this control.
+    pub(crate) fn with_control(body: Box<dyn Robot>, mut control: NaoControl) -> Result<SimulatedNao, Error> {
         let (server, lola) = Socket::pair()?;
         let (simulated, channels) = side_channels::pair()?;
         let server = LolaServer::new(body, server, simulated);
-        let mut control = NaoControl::new(actions);
         control.anatomy_mut().radio = server.radio();
         Ok(SimulatedNao {
             server,

@@ -306,3 +306,48 @@ fn a_file_of_poses_with_errors_opens_no_body() {
         "dive.xml:1:18: error[E0306]: `LKneePitch` is `90`, expected a number from -0.0923 to 2.1125";
     assert!(error.to_string().contains(expected), "{error}");
 }
+
+#[test]
+fn a_robot_of_its_own_keeps_its_limits() {
+    let folder = tempfile::tempdir().unwrap();
+    let built_in = include_str!("../nao.urdf");
+    let write = |name: &str, changes: &[(&str, &str)]| {
+        let text = changes.iter().fold(built_in.to_owned(), |text, (from, to)| {
+            assert_eq!(text.matches(from).count(), 1, "{from}");
+            text.replace(from, to)
+        });
+        let path = folder.path().join(name);
+        std::fs::write(&path, text).unwrap();
+        BTreeMap::from([("anatomy".to_owned(), path.display().to_string())])
+    };
+    let slow = write(
+        "slow.urdf",
+        &[("walk x=\"-0.15 0.3\"", "walk x=\"-0.1 0.1\""), ("upper=\"0.5149\"", "upper=\"0.2\"")],
+    );
+    let command = Actuators { walk_x: 0.3, head_pitch: 0.5, ..Actuators::default() };
+    let walk = |options| {
+        let mut trial = Trial::with(field(), options);
+        let way = trial.run(3.0, command);
+        (way.position.x, trial.percepts.sensors.head_pitch)
+    };
+    let (ahead, pitch) = walk(&slow);
+    assert!((0.2..0.32).contains(&ahead) && (pitch - 0.2).abs() < 0.01, "{ahead} {pitch}");
+    let (ahead, pitch) = walk(&BTreeMap::new());
+    assert!((0.6..0.95).contains(&ahead) && (pitch - 0.5).abs() < 0.01, "{ahead} {pitch}");
+
+    let options = write(
+        "tall.urdf",
+        &[(
+            "<parent link=\"LThigh\"/><child link=\"LTibia\"/>\n    \
+        <origin xyz=\"0 0 -0.1\"/>",
+            "<parent link=\"LThigh\"/><child link=\"LTibia\"/>\n    \
+        <origin xyz=\"0 0 -0.11\"/>",
+        )],
+    );
+    let settings = BodySettings { kind: "nao".to_owned(), options, ..BodySettings::default() };
+    let Err(refused) = settings.open(Some(Box::new(field().body(0).unwrap())), 7) else {
+        panic!("a robot with a longer thigh was opened");
+    };
+    let expected = "error[E0373]: `LTibia` is at xyz 0.0000 0.0500 -0.1950";
+    assert!(refused.to_string().contains(expected), "{refused}");
+}

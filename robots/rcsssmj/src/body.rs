@@ -8,7 +8,7 @@ use crate::connection::Connection;
 use crate::control::BoosterControl;
 use crate::effector::Effectors;
 use crate::error::Error;
-use crate::humanoid::{CYCLE, Humanoid};
+use crate::humanoid::{CYCLE_SECONDS, Humanoid};
 use crate::match_rules::{FieldPose, MatchRules};
 use crate::monitor::{Command, Monitor};
 use crate::options::Options;
@@ -254,7 +254,7 @@ impl Booster {
     /// Puts a robot that has lain for a while on its feet, behind where it fell.
     fn pick_up(&mut self) {
         self.lying = if self.control.is_fallen() { self.lying + 1 } else { 0 };
-        if !self.pick_up || f64::from(self.lying) * CYCLE.as_secs_f64() < LYING {
+        if !self.pick_up || f64::from(self.lying) * CYCLE_SECONDS < LYING {
             return;
         }
         self.lying = 0;

@@ -1,9 +1,12 @@
-//! What the robots of the server differ in: joints, lengths, masses, and numbers of their motions.
+//! What the robots of the server differ in: the anatomy, which is read from a file, and numbers of
+//! their motions.
 
-use std::time::Duration;
+use std::sync::LazyLock;
 
-use monas_robot::{Anatomy, Camera, Joint, Limits, Skill};
-use nalgebra::{Point3, Vector3};
+use monas_config::urdf;
+use monas_robot::{Anatomy, Limits};
+use nalgebra::Point3;
+use yase::Source;
 
 use crate::k1::K1;
 use crate::t1::T1;
@@ -15,9 +18,7 @@ pub const JOINTS: usize = 23;
 /// A value for each joint, in the order of the anatomy.
 pub type JointValues = [f64; JOINTS];
 
-/// The period of the server: four steps of its physics.
-pub(crate) const CYCLE: Duration = Duration::from_millis(20);
-/// The same in seconds.
+/// The period of the server, s: four steps of its physics.
 pub(crate) const CYCLE_SECONDS: f64 = 0.02;
 
 /// The head's yaw, of each robot.
@@ -29,25 +30,48 @@ pub(crate) const LEFT_SHOULDER_ROLL: usize = 3;
 /// The roll of the right shoulder.
 pub(crate) const RIGHT_SHOULDER_ROLL: usize = 7;
 
-pub(crate) const ROLL: [f64; 3] = [1.0, 0.0, 0.0];
-pub(crate) const PITCH: [f64; 3] = [0.0, 1.0, 0.0];
-pub(crate) const YAW: [f64; 3] = [0.0, 0.0, 1.0];
+/// The joint that not each robot has.
+const WAIST: usize = 10;
+
+/// The names of the joints, and of their motors and perceptors at the server.
+const CHANNELS: [(&str, &str, &str); JOINTS] = [
+    ("HeadYaw", "he1", "q_hj1"),
+    ("HeadPitch", "he2", "q_hj2"),
+    ("LShoulderPitch", "lae1", "q_laj1"),
+    ("LShoulderRoll", "lae2", "q_laj2"),
+    ("LElbowPitch", "lae3", "q_laj3"),
+    ("LElbowYaw", "lae4", "q_laj4"),
+    ("RShoulderPitch", "rae1", "q_raj1"),
+    ("RShoulderRoll", "rae2", "q_raj2"),
+    ("RElbowPitch", "rae3", "q_raj3"),
+    ("RElbowYaw", "rae4", "q_raj4"),
+    ("Waist", "te1", "q_tj1"),
+    ("LHipPitch", "lle1", "q_llj1"),
+    ("LHipRoll", "lle2", "q_llj2"),
+    ("LHipYaw", "lle3", "q_llj3"),
+    ("LKneePitch", "lle4", "q_llj4"),
+    ("LAnklePitch", "lle5", "q_llj5"),
+    ("LAnkleRoll", "lle6", "q_llj6"),
+    ("RHipPitch", "rle1", "q_rlj1"),
+    ("RHipRoll", "rle2", "q_rlj2"),
+    ("RHipYaw", "rle3", "q_rlj3"),
+    ("RKneePitch", "rle4", "q_rlj4"),
+    ("RAnklePitch", "rle5", "q_rlj5"),
+    ("RAnkleRoll", "rle6", "q_rlj6"),
+];
 
 /// A robot of the server: [`T1`](crate::T1) or [`K1`](crate::K1). Lengths are in metres.
 ///
 /// The joints are in the order of the server's perceptors: head, left arm, right arm, waist if
 /// there is one, left leg, right leg. Those of a leg are pitch, roll and yaw of the hip, knee,
 /// pitch and roll of the ankle.
-#[derive(PartialEq, Debug)]
+#[derive(Debug)]
 pub struct Humanoid {
     /// With which it joins the server.
     pub(crate) name: &'static str,
-    /// The name of its anatomy.
-    pub(crate) full_name: &'static str,
-    pub(crate) joints: &'static [JointRow],
-    pub(crate) torso: Link,
-    /// The links in the order of the joints that move them.
-    pub(crate) links: &'static [Link],
+    /// Joints, links, masses, camera: of a file. The link after the torso's that a joint moves has
+    /// the joint's index plus one.
+    pub(crate) anatomy: LazyLock<Anatomy>,
     pub(crate) waist: Option<usize>,
     /// The first joint of a leg.
     pub(crate) left_leg: usize,
@@ -61,8 +85,6 @@ pub struct Humanoid {
     pub(crate) sole: f64,
     /// The corners of a sole in the frame of the ankle's roll joint: those of the foot's box.
     pub(crate) corners: [Point3<f64>; 4],
-    /// From the pitch joint of the head to the camera.
-    pub(crate) camera: Vector3<f64>,
     /// The middle between the hips in the torso frame.
     pub(crate) hips: Point3<f64>,
     /// From the middle between the hips to the pitch joint of the left one, and to its foot in a
@@ -84,34 +106,17 @@ pub struct Humanoid {
     pub(crate) kick: &'static str,
 }
 
-/// The mass of a link, kg, and its centre in the frame of the joint that moves it, m.
-pub(crate) type Link = (f64, [f64; 3]);
-
-/// A joint: its names here and at the server, its range, rad, and where its axis is fixed to the
-/// link of its parent, none for the torso.
-#[derive(PartialEq, Debug)]
-pub(crate) struct JointRow {
-    name: &'static str,
-    motor: &'static str,
-    perceptor: &'static str,
-    low: f64,
-    high: f64,
-    parent: Option<usize>,
-    offset: [f64; 3],
-    axis: [f64; 3],
+/// Reads the file of a robot.
+pub(crate) fn read(name: &str, text: &str) -> Anatomy {
+    let (anatomy, _) = urdf::read(&Source::new(name, text));
+    #[allow(clippy::expect_used)] // the file is part of the program, and a test reads it
+    anatomy.expect("the file has no errors")
 }
 
-#[allow(clippy::too_many_arguments)] // a row of a table
-pub(crate) const fn row(
-    name: &'static str,
-    motor: &'static str,
-    perceptor: &'static str,
-    range: (f64, f64),
-    parent: Option<usize>,
-    offset: [f64; 3],
-    axis: [f64; 3],
-) -> JointRow {
-    JointRow { name, motor, perceptor, low: range.0, high: range.1, parent, offset, axis }
+impl PartialEq for Humanoid {
+    fn eq(&self, other: &Humanoid) -> bool {
+        self.name == other.name
+    }
 }
 
 impl Humanoid {
@@ -119,7 +124,7 @@ impl Humanoid {
     pub const ALL: [&'static Humanoid; 2] = [&T1, &K1];
 
     /// Their names, in the same order.
-    pub(crate) const NAMES: [&'static str; 2] = [Humanoid::ALL[0].name, Humanoid::ALL[1].name];
+    pub(crate) const NAMES: [&'static str; 2] = ["T1", "K1"];
 
     /// The robot with a name, such as `K1`.
     pub fn named(name: &str) -> Option<&'static Humanoid> {
@@ -133,7 +138,7 @@ impl Humanoid {
 
     /// The number of its joints.
     pub fn joint_count(&self) -> usize {
-        self.joints.len()
+        self.anatomy.joints.len()
     }
 
     /// The height of the torso's origin above the ground in a stand with straight knees, m.
@@ -151,7 +156,7 @@ impl Humanoid {
     /// # Panics
     /// There is no such joint.
     pub fn limits(&self, joint: usize) -> Limits {
-        Limits::new(self.joints[joint].low, self.joints[joint].high)
+        self.anatomy.joints[joint].limits
     }
 
     /// Torque per angle, Nm/rad, and per angular velocity, Nm s/rad, of a joint that is commanded
@@ -162,86 +167,100 @@ impl Humanoid {
 
     /// The name of the motor of a joint.
     pub(crate) fn motor(&self, joint: usize) -> &'static str {
-        self.joints[joint].motor
+        let is_after_gap = self.waist.is_none() && joint >= WAIST;
+        CHANNELS[joint + usize::from(is_after_gap)].1
     }
 
     /// The joint of a perceptor.
     pub(crate) fn of_perceptor(&self, name: &[u8]) -> Option<usize> {
-        self.joints.iter().position(|row| row.perceptor.as_bytes() == name)
+        let channel = CHANNELS.iter().position(|(_, _, perceptor)| perceptor.as_bytes() == name)?;
+        match (self.waist, channel) {
+            (None, WAIST) => None,
+            (None, after) if after > WAIST => Some(after - 1),
+            _ => Some(channel),
+        }
     }
 
-    /// Offset and axis of a joint, and the joint that carries it.
-    pub(crate) fn link(&self, joint: usize) -> ([f64; 3], [f64; 3], Option<usize>) {
-        let JointRow { offset, axis, parent, .. } = self.joints[joint];
-        (offset, axis, parent)
+    /// The link that a joint moves.
+    pub(crate) fn link(joint: usize) -> usize {
+        joint + 1
     }
 
     /// The anatomy of a robot that walks within limits: ahead, to a side, turning.
     pub(crate) fn anatomy(&self, walk_x: Limits, walk_y: Limits, walk_turn: Limits) -> Anatomy {
-        let joint = |row: &JointRow| Joint {
-            name: row.name,
-            limits: Limits::new(row.low, row.high),
-            parent: row.parent,
-            offset: row.offset,
-            axis: row.axis,
-        };
-        // The server shows what lies within 60 degrees of the camera's axis, horizontally and
-        // vertically.
-        let view = 2.0 * std::f64::consts::FRAC_PI_3;
-        let height = self.straight_height + self.camera(&[0.0; JOINTS]).z;
-        Anatomy {
-            head_yaw: self.limits(HEAD_YAW),
-            head_pitch: self.limits(HEAD_PITCH),
-            walk_x,
-            walk_y,
-            walk_turn,
-            camera: Some(Camera { horizontal: view, vertical: view, height }),
-            skills: vec![Skill::KickLeft, Skill::KickRight, Skill::StandUp],
-            joints: self.joints.iter().map(joint).collect(),
-            ..Anatomy::new(self.full_name, CYCLE)
-        }
+        Anatomy { walk_x, walk_y, walk_turn, ..self.anatomy.clone() }
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use nalgebra::{Isometry3, Translation3, Vector3};
+
     use super::*;
 
     #[test]
     fn the_right_side_mirrors_the_left() {
-        let still = Limits::symmetric(0.0);
         for robot in Humanoid::ALL {
-            let anatomy = robot.anatomy(still, still, still);
+            let anatomy = &robot.anatomy;
             for (index, left) in
                 anatomy.joints.iter().enumerate().filter(|(_, joint)| joint.name.starts_with('L'))
             {
                 let right = anatomy.joint(&left.name.replacen('L', "R", 1)).unwrap();
                 assert_eq!(right - index, if index < robot.left_leg { 4 } else { 6 }, "{}", left.name);
-                let (joint, [x, y, z]) = (&anatomy.joints[right], left.offset);
-                assert_eq!(joint.offset, [x, -y, z]);
+                let [here, there] = [index, right].map(|joint| &anatomy.links[Humanoid::link(joint)]);
+                let ([x, y, z], turned) = (here.placement.translation.vector.into(), here.placement.rotation);
+                let placement = Isometry3::from_parts(Translation3::new(x, -y, z), turned);
+                assert_eq!(there.placement, placement);
                 let Limits { low, high } = left.limits;
-                let is_mirrored = left.axis != PITCH;
-                assert_eq!(joint.limits, if is_mirrored { Limits::new(-high, -low) } else { left.limits });
+                let is_mirrored = here.motion.unwrap().axis != Vector3::y_axis();
+                let image = if is_mirrored { Limits::new(-high, -low) } else { left.limits };
+                assert_eq!(anatomy.joints[right].limits, image);
             }
         }
     }
 
     #[test]
-    fn every_perceptor_and_motor_has_one_joint() {
+    fn each_joint_has_its_channels_and_moves_the_link_after_it() {
         for robot in Humanoid::ALL {
-            for (index, row) in robot.joints.iter().enumerate() {
-                assert_eq!(robot.of_perceptor(row.perceptor.as_bytes()), Some(index));
-                assert_eq!(robot.joints.iter().filter(|other| other.motor == row.motor).count(), 1);
+            for (index, joint) in robot.anatomy.joints.iter().enumerate() {
+                let channel = CHANNELS.iter().find(|(name, ..)| *name == joint.name).unwrap();
+                assert_eq!(robot.of_perceptor(channel.2.as_bytes()), Some(index));
+                assert_eq!(robot.motor(index), channel.1);
+                let link = &robot.anatomy.links[Humanoid::link(index)];
+                assert_eq!(link.motion.map(|motion| motion.joint), Some(index), "{}", link.name);
             }
             assert_eq!(robot.of_perceptor(b"q_l4j1"), None);
-            assert_eq!(robot.joint_count(), robot.links.len());
+        }
+        assert_eq!((T1.of_perceptor(b"q_tj1"), K1.of_perceptor(b"q_tj1")), (Some(WAIST), None));
+    }
+
+    #[test]
+    fn lengths_of_the_legs_are_those_of_the_anatomy() {
+        for robot in Humanoid::ALL {
+            let zero = [0.0; JOINTS];
+            let at = |name| robot.joint_origin(robot.anatomy.joint(name).unwrap(), &zero);
+            let (hip, knee, ankle) = (at("LHipPitch"), at("LKneePitch"), at("LAnklePitch"));
+            let middle = nalgebra::center(&hip, &at("RHipPitch"));
+            let [thigh, shank] = [knee - hip, ankle - knee].map(|bone| Vector3::new(bone.x, 0.0, bone.z));
+            let bend = libm::atan2(thigh.x, -thigh.z) - libm::atan2(shank.x, -shank.z);
+            for (length, expected) in [
+                (robot.beside, hip.y - middle.y),
+                (robot.thigh, thigh.norm()),
+                (robot.shank, shank.norm()),
+                (robot.knee_at_straight, -bend),
+                (robot.straight_height, robot.sole - at("LAnkleRoll").z),
+                (robot.hips.x, middle.x),
+                (robot.hips.z, middle.z),
+            ] {
+                assert!((length - expected).abs() < 2e-4, "{}: {length}, not {expected}", robot.name);
+            }
         }
     }
 
     #[test]
     fn a_joint_is_where_its_names_say() {
         for robot in Humanoid::ALL {
-            let at = |name| robot.joints.iter().position(|row| row.name == name);
+            let at = |name| robot.anatomy.joint(name);
             assert_eq!((at("HeadYaw"), at("HeadPitch")), (Some(HEAD_YAW), Some(HEAD_PITCH)));
             let shoulders = (at("LShoulderRoll"), at("RShoulderRoll"));
             assert_eq!(shoulders, (Some(LEFT_SHOULDER_ROLL), Some(RIGHT_SHOULDER_ROLL)));
@@ -250,6 +269,7 @@ mod tests {
             assert_eq!(legs, (Some(robot.left_leg), Some(robot.right_leg)));
         }
         assert_eq!(T1.joint_count() - K1.joint_count(), 1, "the waist");
+        assert_eq!(Humanoid::ALL.map(Humanoid::name), Humanoid::NAMES);
     }
 
     #[test]

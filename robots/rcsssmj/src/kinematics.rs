@@ -4,9 +4,9 @@
 //! level frame has the same origin and heading, but its z axis is vertical. The robot frame has its
 //! origin on the ground below the middle between the hips.
 
-use nalgebra::{Isometry3, Point3, Rotation3, Unit, UnitQuaternion, Vector3};
+use nalgebra::{Isometry3, Point3, UnitQuaternion, Vector3};
 
-use crate::humanoid::{HEAD_PITCH, HEAD_YAW, Humanoid, JOINTS, JointValues};
+use crate::humanoid::{Humanoid, JOINTS, JointValues};
 use crate::percept::Polar;
 
 /// Rounds in which the place of a sole is approached: the axes of hip and ankle do not meet.
@@ -36,14 +36,8 @@ impl Humanoid {
     }
 
     /// A point in the frame of a joint, in the torso frame.
-    pub(crate) fn in_torso(&self, point: Point3<f64>, joint: usize, angles: &JointValues) -> Point3<f64> {
-        let (offset, axis, parent) = self.link(joint);
-        let axis = Unit::new_unchecked(Vector3::from(axis));
-        let turned = Rotation3::from_axis_angle(&axis, angles[joint]) * point + Vector3::from(offset);
-        match parent {
-            Some(parent) => self.in_torso(turned, parent, angles),
-            None => turned,
-        }
+    fn in_torso(&self, point: Point3<f64>, joint: usize, angles: &JointValues) -> Point3<f64> {
+        self.anatomy.in_torso(Humanoid::link(joint), point, angles)
     }
 
     /// Where the axis of a joint is fixed to the link before it, in the torso frame.
@@ -56,7 +50,12 @@ impl Humanoid {
 
     /// The camera in the torso frame.
     pub fn camera(&self, angles: &JointValues) -> Point3<f64> {
-        self.in_torso(Point3::from(self.camera), HEAD_PITCH, angles)
+        self.anatomy.in_torso(self.camera_link(), Point3::origin(), angles)
+    }
+
+    /// The camera's link.
+    fn camera_link(&self) -> usize {
+        self.anatomy.cameras.first().and_then(|camera| camera.link).unwrap_or_default()
     }
 
     /// The middle of a sole, below the ankle, in the torso frame.
@@ -66,15 +65,8 @@ impl Humanoid {
 
     /// The pose of a sole in the torso frame.
     pub fn sole_pose(&self, foot: Foot, angles: &JointValues) -> Isometry3<f64> {
-        let mut pose = Isometry3::translation(0.0, 0.0, -self.sole);
-        let mut joint = Some(self.ankle(foot));
-        while let Some(index) = joint {
-            let (offset, axis, parent) = self.link(index);
-            let turned = UnitQuaternion::new(Vector3::from(axis) * angles[index]);
-            pose = Isometry3::from_parts(Vector3::from(offset).into(), turned) * pose;
-            joint = parent;
-        }
-        pose
+        let sole = Isometry3::translation(0.0, 0.0, -self.sole);
+        self.anatomy.pose_in_torso(Humanoid::link(self.ankle(foot)), sole, angles)
     }
 
     /// The angles of the six joints of a leg that bring its sole to a pose in the torso frame, with
@@ -127,9 +119,7 @@ impl Humanoid {
         let (sin_elevation, cos_elevation) = libm::sincos(seen.elevation);
         let (sin_azimuth, cos_azimuth) = libm::sincos(seen.azimuth);
         let ray = Vector3::new(cos_elevation * cos_azimuth, cos_elevation * sin_azimuth, sin_elevation);
-        // The camera has the axes of the head's pitch joint.
-        debug_assert_eq!(self.link(HEAD_PITCH).2, Some(HEAD_YAW));
-        self.in_torso(Point3::from(self.camera + ray * seen.distance), HEAD_PITCH, angles)
+        self.anatomy.in_torso(self.camera_link(), Point3::from(ray * seen.distance), angles)
     }
 }
 
@@ -200,6 +190,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+    use crate::humanoid::{HEAD_PITCH, HEAD_YAW};
     use crate::{K1, T1};
 
     const STRAIGHT: JointValues = [0.0; JOINTS];

@@ -1,22 +1,18 @@
 //! The masses of a robot and their centre.
 
-use nalgebra::{Point3, Vector3};
+use nalgebra::Point3;
 
 use crate::humanoid::{Humanoid, JointValues};
 
 impl Humanoid {
     /// The mass of the whole robot, kg.
     pub fn mass(&self) -> f64 {
-        self.torso.0 + self.links.iter().map(|(mass, _)| mass).sum::<f64>()
+        self.anatomy.mass()
     }
 
     /// The centre of mass in the torso frame.
     pub fn centre_of_mass(&self, angles: &JointValues) -> Point3<f64> {
-        let mut sum = Vector3::from(self.torso.1) * self.torso.0;
-        for (joint, (mass, centre)) in self.links.iter().enumerate() {
-            sum += self.in_torso(Point3::from(*centre), joint, angles).coords * *mass;
-        }
-        Point3::from(sum / self.mass())
+        self.anatomy.centre_of_mass(angles)
     }
 }
 

@@ -22,9 +22,9 @@ use super::layers::Layers;
 use super::links::LinkReader;
 use super::modules;
 use super::paths;
-use super::poses;
 use super::resolve::{resolve, sort};
 use super::values::Values;
+use super::{poses, urdf};
 use monas_core::activity::Activity;
 use monas_core::agent::{Agent, FailurePolicy, ListedActivity};
 use monas_core::call;
@@ -267,7 +267,12 @@ impl AgentReader<'_> {
             OptionKind::File => self.file(given, option.doc)?.to_string_lossy().into_owned(),
             OptionKind::Poses(anatomy) => {
                 let file = self.file(given, option.doc)?;
-                self.diagnostics.extend(poses::load(&file, &anatomy()).1);
+                self.diagnostics.extend(poses::load(&file, anatomy()).1);
+                file.to_string_lossy().into_owned()
+            }
+            OptionKind::Anatomy(model) => {
+                let file = self.file(given, option.doc)?;
+                self.diagnostics.extend(urdf::load_variant(&file, model()).1);
                 file.to_string_lossy().into_owned()
             }
             _ => value.to_owned(),

@@ -22,6 +22,7 @@ mod agents;
 mod check;
 mod kind;
 
+use std::borrow::Cow;
 use std::sync::Arc;
 
 use yase::{Diagnostic, Source};
@@ -73,7 +74,7 @@ pub(crate) struct ChildRule {
 /// An attribute of an element.
 #[derive(Clone, Debug)]
 pub struct AttributeRule {
-    pub(crate) key: &'static str,
+    pub(crate) key: Cow<'static, str>,
     pub(crate) kind: Kind,
     pub(crate) doc: &'static str,
     pub(crate) is_required: bool,
@@ -258,8 +259,8 @@ impl ElementRule {
 
 impl AttributeRule {
     /// An optional attribute; `doc` describes it.
-    pub fn new(key: &'static str, kind: Kind, doc: &'static str) -> AttributeRule {
-        AttributeRule { key, kind, doc, is_required: false, default: None, alias: None }
+    pub fn new(key: impl Into<Cow<'static, str>>, kind: Kind, doc: &'static str) -> AttributeRule {
+        AttributeRule { key: key.into(), kind, doc, is_required: false, default: None, alias: None }
     }
 
     /// Makes it required.
@@ -281,8 +282,8 @@ impl AttributeRule {
     }
 
     /// Whether a name in a file means it.
-    pub fn key(&self) -> &'static str {
-        self.key
+    pub fn key(&self) -> &str {
+        &self.key
     }
 
     /// The kind of its values.
@@ -292,6 +293,6 @@ impl AttributeRule {
 
     pub(crate) fn is(&self, name: &str) -> bool {
         let is_written = super::element::is_written;
-        is_written(name, self.key) || self.alias.is_some_and(|alias| is_written(name, alias))
+        is_written(name, &self.key) || self.alias.is_some_and(|alias| is_written(name, alias))
     }
 }

@@ -401,7 +401,7 @@ impl SettingWriter<'_> {
 
 /// An example of a setting of an element.
 fn example_of(rule: &ElementRule) -> String {
-    let key = rule.attributes.first().map_or("KEY", |attribute| attribute.key);
+    let key = rule.attributes.first().map_or("KEY", |attribute| &*attribute.key);
     match rule.identity {
         Identity::None => format!("write `{}.{key}=VALUE`", rule.name),
         _ => format!("write `{}.NAME.{key}=VALUE`", rule.name),

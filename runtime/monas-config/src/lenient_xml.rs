@@ -28,6 +28,12 @@ struct TextRun {
 }
 
 impl RepairedXml {
+    /// A text that needs no repair.
+    pub(crate) fn unchanged(text: &str) -> RepairedXml {
+        let whole = TextRun { start: 0, original: 0, copied: true };
+        RepairedXml { text: text.to_owned(), diagnostics: Vec::new(), pieces: vec![whole] }
+    }
+
     /// The byte of the original that corresponds to a byte of the repaired text.
     pub(crate) fn original(&self, byte: usize) -> usize {
         let index = self.pieces.partition_point(|piece| piece.start <= byte);

@@ -124,6 +124,7 @@ mod schema;
 mod severity;
 mod toml;
 mod tree;
+pub mod urdf;
 mod values;
 mod write_back;
 pub mod xml;

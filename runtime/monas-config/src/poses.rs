@@ -18,10 +18,7 @@
 //! use monas_config::poses::{self, JointPose};
 //! use monas_robot::{Anatomy, Joint, Limits};
 //!
-//! let joint = |name| {
-//!     let (limits, parent) = (Limits::symmetric(1.5), None);
-//!     Joint { name, limits, parent, offset: [0.0; 3], axis: [0.0, 0.0, 1.0] }
-//! };
+//! let joint = |name: &str| Joint { name: name.into(), limits: Limits::symmetric(1.5), speed: None };
 //! let joints = vec![joint("HeadYaw"), joint("HeadPitch")];
 //! let head = Anatomy { joints, ..Anatomy::new("head", Duration::from_millis(10)) };
 //! let listing = "<?xml version=\"1.0\" ?>\n<pose HeadYaw=0.876 HeadPitch=1.324 />\n<pose HeadYaw=0.227 HeadPitch=0.912 />\n";
@@ -33,7 +30,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use monas_robot::Anatomy;
+use monas_robot::{Anatomy, Joint};
 use yase::{Diagnostic, Source, Span};
 
 use crate::{AttributeRule, Element, ElementRule, Grammar, Kind, Values, paths};
@@ -64,7 +61,7 @@ pub fn grammar(anatomy: &Anatomy) -> Grammar {
         ))
         .attributes(anatomy.joints.iter().map(|joint| {
             let angle = Kind::number_in(joint.limits.low, joint.limits.high);
-            AttributeRule::new(joint.name, angle, "the angle of the joint, rad")
+            AttributeRule::new(joint.name.clone(), angle, "the angle of the joint, rad")
         }));
     Grammar::default().root(pose).root(ElementRule::new("poses", "a sequence").group().children("pose"))
 }
@@ -121,7 +118,7 @@ fn pose(element: &Element, grammar: &Grammar, anatomy: &Anatomy) -> JointPose {
     JointPose {
         seconds: values.number("duration").unwrap_or_default(),
         stiffness: values.number("stiffness"),
-        angles: joints.filter_map(|(index, joint)| Some((index, values.number(joint.name)?))).collect(),
+        angles: joints.filter_map(|(index, joint)| Some((index, values.number(&joint.name)?))).collect(),
     }
 }
 
@@ -138,8 +135,8 @@ fn too_fast(
     for (element, pose) in elements.iter().zip(poses) {
         for &(joint, angle) in &pose.angles {
             let Some(before) = angles[joint].replace(angle) else { continue };
-            let Some(&speed) = anatomy.joint_speeds.get(joint) else { continue };
-            let (name, way) = (anatomy.joints[joint].name, f64::abs(angle - before));
+            let Joint { name, speed: Some(speed), .. } = &anatomy.joints[joint] else { continue };
+            let way = f64::abs(angle - before);
             if way <= speed * pose.seconds {
                 continue;
             }

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use yase::{Diagnostic, Source, Span};
 
 use super::element::{Attribute, Element, Layer};
-use super::grammar::{ElementRule, Grammar, Identity};
+use super::grammar::{AttributeRule, ElementRule, Grammar, Identity};
 use super::layers::{Layers, UnmatchedSetting};
 use super::paths;
 
@@ -137,10 +137,12 @@ fn list_element(
         let place = Some((element.source.clone(), element.text_span));
         entries.push(ResolvedEntry { path: path.to_owned(), value, layer: element.layer, place });
     }
-    for known in rule.attributes.iter().filter(|known| rule.identity != Identity::Attribute(known.key)) {
+    let is_identity =
+        |known: &&AttributeRule| matches!(rule.identity, Identity::Attribute(key) if key == known.key);
+    for known in rule.attributes.iter().filter(|known| !is_identity(known)) {
         let given = element.attributes.iter().find(|given| known.is(&given.name));
         match (given, &known.default) {
-            (Some(given), _) => entries.push(entry(path, known.key, given)),
+            (Some(given), _) => entries.push(entry(path, &known.key, given)),
             (None, Some(default)) => entries.push(ResolvedEntry {
                 path: format!("{path}.{}", known.key),
                 value: Some(default.clone()),

@@ -30,17 +30,39 @@ pub fn parse(source: &Arc<Source>) -> (Vec<Element>, Vec<Diagnostic>) {
     let elements = match roxmltree::Document::parse(&repaired.text) {
         Ok(document) => children(document.root_element(), &repaired, source),
         Err(error) => {
-            let at = repaired.original(byte_of(&repaired.text, error.pos()));
-            let span = within(&source.text, (at..at + 1).into());
-            diagnostics.push(Diagnostic::error(
-                "E0301",
-                span,
-                format!("not XML: {}", without_position(&error)),
-            ));
+            diagnostics.push(not_xml(&error, &repaired, source));
             Vec::new()
         }
     };
     (elements, diagnostics.into_iter().map(|diagnostic| diagnostic.in_source(source)).collect())
+}
+
+/// Parses a text that other programs write, by the rules of XML: with namespaces, one root, and no
+/// repairs.
+///
+/// # Errors
+/// It is not XML, or more than [`DEEPEST`] elements are in one another.
+pub(crate) fn parse_strict(source: &Arc<Source>) -> Result<Element, Diagnostic> {
+    let text = RepairedXml::unchanged(&source.text);
+    let document = roxmltree::Document::parse(&source.text)
+        .map_err(|error| not_xml(&error, &text, source).in_source(source))?;
+    match document.descendants().find(|node| node.ancestors().take(DEEPEST + 1).count() > DEEPEST) {
+        Some(deep) => {
+            let message = format!("more than {DEEPEST} elements are in one another");
+            let span = within(&source.text, (deep.range().start..deep.range().start + 1).into());
+            Err(Diagnostic::error("E0301", span, message).in_source(source))
+        }
+        None => Ok(element(document.root_element(), &text, source)),
+    }
+}
+
+/// The greatest depth of elements in [`parse_strict`].
+const DEEPEST: usize = 64;
+
+fn not_xml(error: &roxmltree::Error, repaired: &RepairedXml, source: &Arc<Source>) -> Diagnostic {
+    let at = repaired.original(byte_of(&repaired.text, error.pos()));
+    let span = within(&source.text, (at..at + 1).into());
+    Diagnostic::error("E0301", span, format!("not XML: {}", without_position(error)))
 }
 
 /// The message without its position, which refers to the repaired text.

@@ -12,12 +12,13 @@ use yase::{Diagnostic, Source};
 
 /// A knee and a head, with limits as those of a Nao.
 fn anatomy() -> Anatomy {
-    let joint = |name, low, high| {
-        let (limits, parent) = (Limits::new(low, high), None);
-        Joint { name, limits, parent, offset: [0.0; 3], axis: [0.0, 1.0, 0.0] }
+    let joint = |name: &str, low, high, speed| Joint {
+        name: name.to_owned(),
+        limits: Limits::new(low, high),
+        speed: Some(speed),
     };
-    let joints = vec![joint("HeadPitch", -0.672, 0.5149), joint("LKneePitch", -0.0923, 2.1125)];
-    Anatomy { joints, joint_speeds: vec![7.0, 6.4], ..Anatomy::new("knee", Duration::from_millis(12)) }
+    let joints = vec![joint("HeadPitch", -0.672, 0.5149, 7.0), joint("LKneePitch", -0.0923, 2.1125, 6.4)];
+    Anatomy { joints, ..Anatomy::new("knee", Duration::from_millis(12)) }
 }
 
 fn read(name: &str, text: &str) -> (Option<Vec<JointPose>>, Vec<Diagnostic>) {

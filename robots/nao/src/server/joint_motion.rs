@@ -3,8 +3,8 @@
 use monas_robot::{Actuators, Posture, Skill};
 use nalgebra::{Isometry3, Point3};
 
-use crate::anatomy::{HIP, NaoJoint};
-use crate::kinematics::{JointAngles, Side, foot_in_torso};
+use crate::anatomy::NaoJoint;
+use crate::kinematics::{HIP, JointAngles, Side, foot_in_torso};
 use crate::lola::CYCLE_SECONDS;
 use crate::walk::displacement;
 

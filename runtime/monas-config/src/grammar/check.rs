@@ -68,7 +68,7 @@ fn missing_attribute(element: &Element, wanted: &AttributeRule) -> Diagnostic {
     let message = format!("`{}` lacks the attribute `{}`", element.name(), wanted.key);
     let diagnostic = element.error("E0305", element.name_span(), message);
     let given = element.attributes().iter().map(|given| given.name.as_str());
-    match yase::diagnostic::nearest(wanted.key, given) {
+    match yase::diagnostic::nearest(&wanted.key, given) {
         Some(wrong) => diagnostic.with_hint(format!("is `{wrong}` meant to be `{}`?", wanted.key)),
         None => diagnostic.with_hint(format!("`{}` is {}", wanted.key, wanted.kind.expected())),
     }
@@ -80,7 +80,7 @@ fn unknown_attribute(element: &Element, given: &Attribute, rule: &ElementRule) -
     // Suggestions use the spelling of the given name.
     let as_in_thesis = given.name.starts_with(char::is_uppercase);
     let spelled = |key: &str| if as_in_thesis { camel_case(key) } else { key.to_owned() };
-    let known: Vec<String> = rule.attributes.iter().map(|attribute| spelled(attribute.key)).collect();
+    let known: Vec<String> = rule.attributes.iter().map(|attribute| spelled(&attribute.key)).collect();
     let known: Vec<&str> = known.iter().map(String::as_str).collect();
     let aliases: Vec<String> =
         rule.attributes.iter().filter_map(|attribute| attribute.alias.map(spelled)).collect();

@@ -100,6 +100,7 @@ impl Kind {
                 (least, most) if most >= u32::MAX.into() => format!("a whole number from {least}"),
                 (least, most) => format!("a whole number from {least} to {most}"),
             },
+            Kind::Number { least: f64::MIN, most: f64::MAX } => "a number".into(),
             Kind::Number { least, most: f64::MAX } => format!("a number of at least {least}"),
             Kind::Number { least, most } => format!("a number from {least} to {most}"),
             Kind::Duration { least: Duration::ZERO } => "a time such as `300s` or `100ms`".into(),

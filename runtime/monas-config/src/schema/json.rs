@@ -32,7 +32,7 @@ pub(crate) fn write(grammar: &Grammar) -> String {
 fn definition(rule: &ElementRule, grammar: &Grammar) -> JsonNode {
     let mut properties: Vec<(String, JsonNode)> = Vec::new();
     for known in &rule.attributes {
-        let names = spellings(known.key).into_iter().chain(known.alias.into_iter().flat_map(spellings));
+        let names = spellings(&known.key).into_iter().chain(known.alias.into_iter().flat_map(spellings));
         properties.extend(names.map(|name| (name, attribute(known))));
     }
     for child in rule.children.iter().filter(|child| grammar.element(child.name).is_some()) {

@@ -69,7 +69,7 @@ fn children(out: &mut String, rule: &ElementRule, grammar: &Grammar) {
 fn attributes(out: &mut String, depth: usize, rule: &ElementRule) {
     for known in &rule.attributes {
         let alias = known.alias.into_iter().flat_map(spellings);
-        for name in spellings(known.key).into_iter().chain(alias) {
+        for name in spellings(&known.key).into_iter().chain(alias) {
             attribute(out, depth, &name, known);
         }
     }

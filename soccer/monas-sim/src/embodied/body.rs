@@ -220,11 +220,12 @@ fn anatomy(physics: &Physics, longest_message: usize) -> Anatomy {
         walk_x: Limits::new(-physics.walk_backward, physics.walk_forward),
         walk_y: Limits::symmetric(physics.walk_sideways),
         walk_turn: Limits::symmetric(physics.walk_turn),
-        camera: Some(Camera {
+        cameras: vec![Camera {
+            name: "head".to_owned(),
+            link: None,
             horizontal: physics.camera_view_horizontal,
             vertical: physics.camera_view_vertical,
-            height: physics.camera_height,
-        }),
+        }],
         skills: vec![
             Skill::KickLeft,
             Skill::KickRight,
