@@ -233,14 +233,14 @@ fn a_robot_of_its_own_may_differ_in_limits_and_masses_only() {
         (
             "origin xyz=\"0 0 0.5\"",
             "origin xyz=\"0 0 0.6\"",
-            "own.urdf:25:4: error[E0373]: `hand` is at \
+            "own.urdf:20:4: error[E0373]: `hand` is at \
           xyz 1.0000 0.0000 0.6000, rpy 0.0000 0.0000 1.5708, in `arm` at xyz 1.0000 0.0000 0.5000, \
           rpy 0.0000 0.0000 1.5708",
         ),
         (
             "xyz=\"0 2 0\"",
             "xyz=\"0 -2 0\"",
-            "own.urdf:26:4: error[E0373]: `finger` moves otherwise than in `arm`",
+            "own.urdf:13:4: error[E0373]: `finger` moves otherwise than in `arm`",
         ),
         ("\"turn\"", "\"tuurn\"", "own.urdf:20:4: error[E0373]: joint 1 is `tuurn`, in `arm` it is `turn`"),
         (

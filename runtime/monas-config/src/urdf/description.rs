@@ -17,6 +17,7 @@ pub(super) struct Description {
     pub(super) robot: Span,
     pub(super) monas: Span,
     pub(super) joints: Vec<Span>,
+    /// The joints that hold the links, and the torso.
     pub(super) links: Vec<Span>,
 }
 
@@ -56,7 +57,10 @@ impl Description {
             robot: robot.name_span(),
             monas: monas.name_span(),
             joints,
-            links: order.iter().map(|&(link, _)| links[link].name_span()).collect(),
+            links: order
+                .iter()
+                .map(|&(link, joint)| joint.map_or(links[link], |joint| joint.element).name_span())
+                .collect(),
         })
     }
 }
