@@ -4,7 +4,7 @@
 
 use monas_vision::FieldObjects;
 
-#[path = "../tests/measure/mod.rs"]
+#[path = "../tests/vision/measure/mod.rs"]
 mod measure;
 
 use measure::{CONDITIONS, Measures, Sequence, Views};

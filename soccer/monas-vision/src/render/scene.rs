@@ -155,13 +155,14 @@ impl Scene {
 
     /// How much light reaches a point beside what stands there.
     fn shadow(&self, point: Point2<f64>) -> f32 {
-        let under = |centre: Point2<f64>, radius: f64| {
-            let away = (point - centre).norm() / radius;
+        let under = |squared: f64, radius: f64| {
+            let away = squared.sqrt() / radius;
             if away < 1.0 { 0.55 + 0.45 * away * away } else { 1.0 }
         };
-        let ball = self.ball.map_or(1.0, |ball| under(ball, 1.25 * self.objects.ball_radius));
-        let robots = self.robots.iter().map(|robot| under(robot.position, 0.2)).fold(1.0, f64::min);
-        ball.min(robots) as f32
+        let squared = |centre: Point2<f64>| (point - centre).norm_squared();
+        let ball = self.ball.map_or(1.0, |ball| under(squared(ball), 1.25 * self.objects.ball_radius));
+        let nearest = self.robots.iter().map(|robot| squared(robot.position)).fold(f64::MAX, f64::min);
+        ball.min(under(nearest, 0.2)) as f32
     }
 
     /// Whether a point is on a line, the circle or a mark.
@@ -174,16 +175,23 @@ impl Scene {
         let area_side = field.goal_area_width / 2.0;
         let near = |value: f64, line: f64| (value - line).abs() <= half;
         let in_field = x <= length + half && y <= width + half;
-        let centre = libm::hypot(x, y);
-        let mark = libm::hypot(x - field.mark_distance, y) <= 2.0 * half;
+        // Most points are beside the square around a circle; a root for each would take long.
+        let on_circle = || {
+            let reach = field.centre_circle_radius + half;
+            x <= reach && y <= reach && near(libm::hypot(x, y), field.centre_circle_radius)
+        };
+        let on_mark = || {
+            let (along, reach) = (x - field.mark_distance, 2.0 * half);
+            along.abs() <= reach && y <= reach && libm::hypot(along, y) <= reach
+        };
         in_field
             && (near(y, width)
                 || near(x, length)
                 || x <= half
-                || near(centre, field.centre_circle_radius)
+                || on_circle()
                 || (near(x, area_front) && y <= area_side + half)
                 || (near(y, area_side) && x >= area_front - half)
-                || mark)
+                || on_mark())
     }
 
     /// The colour of the wall at a point: panels of many colours, none of them an object's.

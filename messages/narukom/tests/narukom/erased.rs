@@ -2,12 +2,10 @@
 //! encoded subscribers, and inspection without reading.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on fails")]
 
-mod messages;
-
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
 
-use messages::*;
+use crate::messages::*;
 use narukom::prost::bytes::{Buf, BufMut};
 use narukom::prost::encoding::{DecodeContext, WireType};
 use narukom::{

@@ -1,9 +1,7 @@
 //! A cycle is a transaction: what a blackboard shows, and when.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on fails")]
 
-mod messages;
-
-use messages::*;
+use crate::messages::*;
 use narukom::{ErrorKind, FieldValue, Timestamp};
 
 #[test]

@@ -2,7 +2,7 @@
 //!
 //! They walk by the project's own walk, or by the policy whose weights `MONAS_T1_POLICY` names. How
 //! often the attacker scores is counted with `MONAS_T1_RUNS=10 cargo test -p monas-tests --test
-//! rcsssmj scores -- --nocapture`, and `MONAS_K1_RUNS=10` counts for a K1.
+//! play scores -- --nocapture`, and `MONAS_K1_RUNS=10` counts for a K1.
 
 #![allow(clippy::unwrap_used)] // tests may panic
 

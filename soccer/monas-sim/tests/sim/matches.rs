@@ -1,10 +1,8 @@
 //! Whole matches of scripted teams: the physics lets robots play soccer.
 #![allow(clippy::unwrap_used)] // tests may panic
 
-mod common;
-
-use common::script::play_match;
-use common::world_with_rules;
+use crate::common::script::play_match;
+use crate::common::world_with_rules;
 use monas_sim::{EventKind, Setup, SimulatedWorld};
 
 fn short_match(seed: u64, teams: &[usize]) -> SimulatedWorld {
@@ -45,8 +43,10 @@ fn a_team_that_plays_beats_one_that_stands() {
 fn the_score_is_the_count_of_goal_events() {
     let world = short_match(1, &[0, 1]);
     for team in [0, 1] {
-        let goals =
-            common::events(&world, |kind| matches!(kind, EventKind::Goal { team: of, .. } if *of == team));
+        let goals = crate::common::events(
+            &world,
+            |kind| matches!(kind, EventKind::Goal { team: of, .. } if *of == team),
+        );
         assert_eq!(goals.len() as u32, world.referee().score()[team]);
         assert_eq!(goals.len() as u32, world.statistics().team(team).goals);
     }

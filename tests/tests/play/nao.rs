@@ -1,8 +1,8 @@
 //! The goalie through the interface of a Nao: its joints, against the same shooters as with the
 //! body of the field.
 //!
-//! `MONAS_SHOOTERS=20 cargo test -p monas-tests --test nao -- --nocapture` plays as many seeds of
-//! five minutes each, and prints the table.
+//! `MONAS_SHOOTERS=20 cargo test -p monas-tests --test play nao -- --nocapture` plays as many seeds
+//! of five minutes each, and prints the table.
 
 #![allow(clippy::unwrap_used)] // tests may panic
 

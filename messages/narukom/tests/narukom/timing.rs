@@ -6,11 +6,9 @@
 //! order.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on fails")]
 
-mod messages;
-
 use std::time::Duration;
 
-use messages::*;
+use crate::messages::*;
 use narukom::{
     AnyMessage as _, Blackboard, HostId, Hub, Publisher, Receiver, RemoteHeader, Sample, Timestamp,
 };

@@ -4,9 +4,7 @@
 //! The model keeps every message ever published, and computes from that what a blackboard shows.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on fails")]
 
-mod messages;
-
-use messages::*;
+use crate::messages::*;
 use narukom::{Blackboard, Hub, SIGNAL_DEPTH, STATE_DEPTH};
 use proptest::prelude::*;
 

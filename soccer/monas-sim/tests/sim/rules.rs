@@ -1,9 +1,7 @@
 //! The referee: states, goals, sides, penalties and restarts.
 #![allow(clippy::unwrap_used)] // tests may panic
 
-mod common;
-
-use common::{clear_field, events, play, playing, roll_into_goal, run, world, world_with_rules};
+use crate::common::{clear_field, events, play, playing, roll_into_goal, run, world, world_with_rules};
 use monas_sim::{
     Command, EventKind, FieldSide, GameState, GoalColour, Motion, Offence, Pose, Side, SimulatedWorld,
     TeamColour, Vector,

@@ -2,11 +2,8 @@
 
 #![allow(clippy::unwrap_used)] // tests may panic
 
-#[path = "decisions/attack.rs"]
 mod attack;
-#[path = "decisions/monitors.rs"]
 mod monitors;
-#[path = "decisions/safety.rs"]
 mod safety;
 
 use std::collections::BTreeMap;

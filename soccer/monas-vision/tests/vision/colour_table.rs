@@ -9,9 +9,7 @@ use monas_vision::{
 };
 use nalgebra::{Isometry3, Point2, Point3, UnitQuaternion, Vector3};
 
-mod measure;
-
-use measure::{Condition, LAMPS, LAMPS_TO_DAY, Measures, Sequence, Views};
+use crate::measure::{Condition, LAMPS, LAMPS_TO_DAY, Measures, Sequence, Views};
 
 const WIDTH: usize = 640;
 const HEIGHT: usize = 480;

@@ -4,9 +4,7 @@
 
 use monas_vision::FieldObjects;
 
-mod measure;
-
-use measure::{CONDITIONS, Measures, Sequence, Tally, Views, mean, ninth_decile};
+use crate::measure::{CONDITIONS, Measures, Sequence, Tally, Views, mean, ninth_decile};
 
 /// What is required of the sightings of a kind of object, over all lights.
 struct Bounds {

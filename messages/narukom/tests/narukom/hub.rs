@@ -1,11 +1,9 @@
 //! The hub: start checks, subscribers, observers, wakers, publishers.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on fails")]
 
-mod messages;
-
 use std::sync::{Arc, Mutex};
 
-use messages::*;
+use crate::messages::*;
 use narukom::{
     Data, ErrorKind, HostId, Hub, Publication, Retention, State, Subscriber, TOPICS, TopicDeclaration,
     TopicSlot,

@@ -6,9 +6,7 @@ use monas_vision::render::{Light, Renderer, RobotFigure, Scene};
 use monas_vision::{Camera, FieldObjects, HeadPose, Image, Jersey, Seen, Vision};
 use nalgebra::{Isometry3, Point2};
 
-mod measure;
-
-use measure::{CONDITIONS, Measures, Sequence, Views};
+use crate::measure::{CONDITIONS, Measures, Sequence, Views};
 
 /// The sum over all lights of images of robots at 0.4 to 1.5 m.
 fn near_robots(objects: FieldObjects, width: usize) -> Measures {

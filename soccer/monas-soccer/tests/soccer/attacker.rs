@@ -1,12 +1,10 @@
 //! Integration tests of the attacker, alone with a ball: chart, activities and functionalities.
 
-mod toy;
-
 use monas_robot::{GamePhase, Skill};
 use monas_soccer as _;
 use nalgebra::{Isometry2, Point2, Vector2};
 
-use toy::{Shared, World};
+use crate::toy::{Shared, World};
 
 fn at(x: f64, y: f64, heading: f64) -> Isometry2<f64> {
     Isometry2::new(Vector2::new(x, y), heading)

@@ -1,9 +1,7 @@
 //! What the runtime of statecharts needs: edits, and regions that take over values.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on fails")]
 
-mod messages;
-
-use messages::*;
+use crate::messages::*;
 use narukom::{Blackboard, ErrorKind, FieldValue, Hub, TopicSlot};
 
 fn slot(hub: &Hub, path: &str) -> TopicSlot {

@@ -2,12 +2,10 @@
 //! here.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on fails")]
 
-mod messages;
-
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-use messages::*;
+use crate::messages::*;
 use narukom::{
     Blackboard, ErrorKind, HOST_LIMIT, HostId, Hub, Observer, Publication, REMOTE_PUBLISHER_LIMIT, Receiver,
     RemoteHeader, SIGNAL_DEPTH, Timestamp, TopicSlot,

@@ -1,11 +1,9 @@
 //! The three retention kinds: state, signal, data.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on fails")]
 
-mod messages;
-
 use std::time::Duration;
 
-use messages::*;
+use crate::messages::*;
 use narukom::{Blackboard, Timestamp};
 
 fn signals(blackboard: &Blackboard) -> Vec<u64> {

@@ -1,9 +1,7 @@
 //! All storage is bounded, and losses are counted.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on fails")]
 
-mod messages;
-
-use messages::*;
+use crate::messages::*;
 use narukom::{ErrorKind, OUTBOX_LIMIT, SIGNAL_DEPTH};
 
 #[test]

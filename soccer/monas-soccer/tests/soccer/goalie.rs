@@ -1,12 +1,10 @@
 //! Integration tests of the goalie against shots.
 
-mod toy;
-
 use monas_robot::{Posture, Skill};
 use monas_soccer as _;
 use nalgebra::{Isometry2, Point2, Vector2};
 
-use toy::Shared;
+use crate::toy::Shared;
 
 /// A goalie in its position, and a resting ball that is then shot so that it crosses the keeper's
 /// lateral axis `offset` metres to its left.

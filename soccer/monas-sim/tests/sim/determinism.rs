@@ -1,8 +1,6 @@
 //! The same seed and the same commands give the same bits.
 #![allow(clippy::unwrap_used)] // tests may panic
 
-mod common;
-
 use monas_sim::{Command, GameState, Motion, Senses, Setup, Side, SimulatedWorld, Vector};
 
 /// A small random generator of commands, independent of the world's.

@@ -1,9 +1,7 @@
 //! Bodies and ball: walking, kicking, rolling, falling and diving.
 #![allow(clippy::unwrap_used)] // tests may panic
 
-mod common;
-
-use common::{clear_field, events, play, playing, run, world};
+use crate::common::{clear_field, events, play, playing, run, world};
 use monas_sim::{
     BodyPhase, Command, Direction, ErrorKind, EventKind, Motion, Physics, Pose, Senses, Setup, Side,
     Sighting, SimulatedWorld, Vector,
@@ -232,6 +230,6 @@ fn walls_keep_the_ball_in_but_not_out_of_the_goal() {
     run(&mut world, 5.0);
     assert!(world.field().contains(world.ball().position), "{:?}", world.ball());
     assert!(events(&world, |kind| matches!(kind, EventKind::ThrowIn { .. })).is_empty());
-    common::roll_into_goal(&mut world, 1.0);
+    crate::common::roll_into_goal(&mut world, 1.0);
     assert_eq!(world.referee().score(), [1, 0]);
 }

@@ -1,0 +1,13 @@
+//! Hubs, blackboards and their promises.
+
+mod bounds;
+mod cycle;
+mod erased;
+mod hosts;
+mod hub;
+mod interleavings;
+mod keeping;
+#[path = "../messages/mod.rs"]
+mod messages;
+mod regions;
+mod timing;

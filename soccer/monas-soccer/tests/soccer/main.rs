@@ -1,0 +1,6 @@
+//! Roles and players of the team.
+
+mod attacker;
+mod goalie;
+mod players;
+mod toy;

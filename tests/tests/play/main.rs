@@ -1,0 +1,15 @@
+//! Whole matches and runs: what players do, and that it repeats.
+//!
+//! One program, since each one links all crates, and so that long matches of one file are played
+//! beside those of another.
+
+mod decisions;
+mod determinism;
+mod freshness;
+mod golden;
+mod images;
+mod kick_off;
+mod localisation;
+mod nao;
+mod rcsssmj;
+mod traces;
