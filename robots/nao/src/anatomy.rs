@@ -7,6 +7,7 @@ use std::path::Path;
 use std::sync::LazyLock;
 
 use monas_config::urdf;
+use monas_kinematics::LinkTree;
 use monas_robot::{Anatomy, Error, ErrorKind, Limits};
 use yase::{Diagnostic, Source};
 
@@ -55,6 +56,13 @@ static NAO: LazyLock<Anatomy> = LazyLock::new(|| {
 /// The anatomy of a Nao V6. It sees objects only where a simulation stands in for its cameras.
 pub fn anatomy() -> &'static Anatomy {
     &NAO
+}
+
+static LINKS: LazyLock<LinkTree> = LazyLock::new(|| LinkTree::new(&NAO));
+
+/// Where the links of a Nao V6 are, for the angles of its joints.
+pub fn links() -> &'static LinkTree {
+    &LINKS
 }
 
 /// The anatomy of a robot: that of the file that the options of a configuration name, otherwise the
@@ -139,10 +147,10 @@ mod tests {
 
     #[test]
     fn the_robot_weighs_what_is_published_and_stands_over_its_feet() {
-        let mass = anatomy().mass();
+        let mass = links().mass();
         assert!((mass - 5.305).abs() < 0.001, "{mass}");
         let angles = stand();
-        let (centre, foot) = (anatomy().centre_of_mass(&angles), foot_in_torso(Side::Left, &angles));
+        let (centre, foot) = (links().centre_of_mass(&angles), foot_in_torso(Side::Left, &angles));
         // The sole reaches 10 cm ahead of the ankle and 5 cm behind it.
         let ahead = centre.x - foot.translation.x;
         assert!(centre.y.abs() < 1e-9 && (-0.05..0.1).contains(&ahead), "{centre} {ahead}");
@@ -154,8 +162,8 @@ mod tests {
         let mut turned = hanging;
         turned[NaoJoint::LWristYaw as usize] = std::f64::consts::PI;
         // Half a turn of the hand mirrors its centre on the axis of the forearm.
-        let moved = anatomy().centre_of_mass(&turned) - anatomy().centre_of_mass(&hanging);
-        let expected = Vector3::new(0.0, 2.0 * 0.000_88, -2.0 * 0.003_08) * (0.185_33 / anatomy().mass());
+        let moved = links().centre_of_mass(&turned) - links().centre_of_mass(&hanging);
+        let expected = Vector3::new(0.0, 2.0 * 0.000_88, -2.0 * 0.003_08) * (0.185_33 / links().mass());
         assert!((moved - expected).norm() < 1e-9, "{moved} {expected}");
     }
 
@@ -165,7 +173,7 @@ mod tests {
             angles in (0..JOINTS).map(|joint| limits(joint).low..limits(joint).high).collect::<Vec<_>>(),
         ) {
             let angles: JointAngles = angles.try_into().unwrap();
-            let [centre, image] = [angles, mirror(&angles)].map(|angles| anatomy().centre_of_mass(&angles));
+            let [centre, image] = [angles, mirror(&angles)].map(|angles| links().centre_of_mass(&angles));
             let expected = Point3::new(centre.x, -centre.y, centre.z);
             prop_assert!((image - expected).norm() < 1e-9, "{} {}", image, expected);
         }

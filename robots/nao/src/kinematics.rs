@@ -8,7 +8,7 @@
 use monas_robot::Camera;
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, UnitVector3, Vector3};
 
-use crate::anatomy::{NaoJoint, anatomy};
+use crate::anatomy::{NaoJoint, anatomy, links};
 use crate::lola::JOINTS;
 
 /// From the torso up to the neck, m. This and the following lengths are those of the
@@ -136,7 +136,7 @@ impl NaoCamera {
 /// The pose of a camera in the torso's frame; x is its line of sight.
 pub fn camera_in_torso(camera: NaoCamera, angles: &JointAngles) -> Isometry3<f64> {
     let link = camera.description().link.unwrap_or_default();
-    anatomy().pose_in_torso(link, Isometry3::identity(), angles)
+    links().pose_in_torso(link, Isometry3::identity(), angles)
 }
 
 /// How much lower a camera looks than the head, rad.
@@ -331,7 +331,7 @@ mod tests {
         fn feet_hands_and_neck_are_where_the_anatomy_has_them(angles in angles()) {
             let check = |side: &str, link: &str, pose: Isometry3<f64>| {
                 let link = anatomy().link(&[side, link].concat()).unwrap();
-                let other = anatomy().pose_in_torso(link, Isometry3::identity(), &angles);
+                let other = links().pose_in_torso(link, Isometry3::identity(), &angles);
                 let apart = (pose.translation.vector - other.translation.vector).norm();
                 apart.max(pose.rotation.angle_to(&other.rotation)) < 1e-7 && apart < 1e-12
             };

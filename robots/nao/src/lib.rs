@@ -59,7 +59,7 @@ use monas_robot::{
     BodyFault, BodyKind, BodyLimit, BodySettings, BodySite, CameraOutput, Robot, Surroundings,
 };
 
-pub use anatomy::{NaoJoint, anatomy};
+pub use anatomy::{NaoJoint, anatomy, links};
 pub use cameras::CameraPlaces;
 pub use error::{Error, ErrorKind};
 pub use nao::Nao;

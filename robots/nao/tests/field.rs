@@ -348,6 +348,6 @@ fn a_robot_of_its_own_keeps_its_limits() {
     let Err(refused) = settings.open(Some(Box::new(field().body(0).unwrap())), 7) else {
         panic!("a robot with a longer thigh was opened");
     };
-    let expected = "error[E0373]: `LTibia` is at xyz 0.0000 0.0500 -0.1950";
+    let expected = "error[E0373]: `LTibia` is at xyz 0 0 -0.11";
     assert!(refused.to_string().contains(expected), "{refused}");
 }

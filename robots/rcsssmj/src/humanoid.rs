@@ -4,6 +4,7 @@
 use std::sync::LazyLock;
 
 use monas_config::urdf;
+use monas_kinematics::LinkTree;
 use monas_robot::{Anatomy, Limits};
 use nalgebra::Point3;
 use yase::Source;
@@ -72,6 +73,7 @@ pub struct Humanoid {
     /// Joints, links, masses, camera: of a file. The link after the torso's that a joint moves has
     /// the joint's index plus one.
     pub(crate) anatomy: LazyLock<Anatomy>,
+    pub(crate) links: LazyLock<LinkTree>,
     pub(crate) waist: Option<usize>,
     /// The first joint of a leg.
     pub(crate) left_leg: usize,
@@ -194,7 +196,7 @@ impl Humanoid {
 
 #[cfg(test)]
 mod tests {
-    use nalgebra::{Isometry3, Translation3, Vector3};
+    use nalgebra::Vector3;
 
     use super::*;
 
@@ -208,11 +210,10 @@ mod tests {
                 let right = anatomy.joint(&left.name.replacen('L', "R", 1)).unwrap();
                 assert_eq!(right - index, if index < robot.left_leg { 4 } else { 6 }, "{}", left.name);
                 let [here, there] = [index, right].map(|joint| &anatomy.links[Humanoid::link(joint)]);
-                let ([x, y, z], turned) = (here.placement.translation.vector.into(), here.placement.rotation);
-                let placement = Isometry3::from_parts(Translation3::new(x, -y, z), turned);
-                assert_eq!(there.placement, placement);
+                let [x, y, z] = here.offset;
+                assert_eq!((there.offset, there.rotation), ([x, -y, z], here.rotation));
                 let Limits { low, high } = left.limits;
-                let is_mirrored = here.motion.unwrap().axis != Vector3::y_axis();
+                let is_mirrored = here.motion.unwrap().axis != [0.0, 1.0, 0.0];
                 let image = if is_mirrored { Limits::new(-high, -low) } else { left.limits };
                 assert_eq!(anatomy.joints[right].limits, image);
             }

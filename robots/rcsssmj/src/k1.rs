@@ -4,6 +4,7 @@
 
 use std::sync::LazyLock;
 
+use monas_kinematics::LinkTree;
 use nalgebra::Point3;
 
 use crate::humanoid::{Humanoid, read};
@@ -15,6 +16,7 @@ const SOLE: f64 = 0.038;
 pub static K1: Humanoid = Humanoid {
     name: "K1",
     anatomy: LazyLock::new(|| read("k1.urdf", include_str!("../k1.urdf"))),
+    links: LazyLock::new(|| LinkTree::new(&K1.anatomy)),
     waist: None,
     left_leg: 10,
     right_leg: 16,

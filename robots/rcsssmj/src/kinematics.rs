@@ -37,7 +37,7 @@ impl Humanoid {
 
     /// A point in the frame of a joint, in the torso frame.
     fn in_torso(&self, point: Point3<f64>, joint: usize, angles: &JointValues) -> Point3<f64> {
-        self.anatomy.in_torso(Humanoid::link(joint), point, angles)
+        self.links.in_torso(Humanoid::link(joint), point, angles)
     }
 
     /// Where the axis of a joint is fixed to the link before it, in the torso frame.
@@ -50,7 +50,7 @@ impl Humanoid {
 
     /// The camera in the torso frame.
     pub fn camera(&self, angles: &JointValues) -> Point3<f64> {
-        self.anatomy.in_torso(self.camera_link(), Point3::origin(), angles)
+        self.links.in_torso(self.camera_link(), Point3::origin(), angles)
     }
 
     /// The camera's link.
@@ -66,7 +66,7 @@ impl Humanoid {
     /// The pose of a sole in the torso frame.
     pub fn sole_pose(&self, foot: Foot, angles: &JointValues) -> Isometry3<f64> {
         let sole = Isometry3::translation(0.0, 0.0, -self.sole);
-        self.anatomy.pose_in_torso(Humanoid::link(self.ankle(foot)), sole, angles)
+        self.links.pose_in_torso(Humanoid::link(self.ankle(foot)), sole, angles)
     }
 
     /// The angles of the six joints of a leg that bring its sole to a pose in the torso frame, with
@@ -119,7 +119,7 @@ impl Humanoid {
         let (sin_elevation, cos_elevation) = libm::sincos(seen.elevation);
         let (sin_azimuth, cos_azimuth) = libm::sincos(seen.azimuth);
         let ray = Vector3::new(cos_elevation * cos_azimuth, cos_elevation * sin_azimuth, sin_elevation);
-        self.anatomy.in_torso(self.camera_link(), Point3::from(ray * seen.distance), angles)
+        self.links.in_torso(self.camera_link(), Point3::from(ray * seen.distance), angles)
     }
 }
 

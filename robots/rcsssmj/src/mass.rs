@@ -7,12 +7,12 @@ use crate::humanoid::{Humanoid, JointValues};
 impl Humanoid {
     /// The mass of the whole robot, kg.
     pub fn mass(&self) -> f64 {
-        self.anatomy.mass()
+        self.links.mass()
     }
 
     /// The centre of mass in the torso frame.
     pub fn centre_of_mass(&self, angles: &JointValues) -> Point3<f64> {
-        self.anatomy.centre_of_mass(angles)
+        self.links.centre_of_mass(angles)
     }
 }
 

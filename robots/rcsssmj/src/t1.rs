@@ -4,6 +4,7 @@
 
 use std::sync::LazyLock;
 
+use monas_kinematics::LinkTree;
 use nalgebra::Point3;
 
 use crate::humanoid::{Humanoid, read};
@@ -16,6 +17,7 @@ const SOLE: f64 = 0.03;
 pub static T1: Humanoid = Humanoid {
     name: "T1",
     anatomy: LazyLock::new(|| read("t1.urdf", include_str!("../t1.urdf"))),
+    links: LazyLock::new(|| LinkTree::new(&T1.anatomy)),
     waist: Some(10),
     left_leg: 11,
     right_leg: 17,

@@ -22,6 +22,8 @@
 //! | `camera`: `name`, `link`, `horizontal`, `vertical` | a camera that looks along the x axis of a link; angles of view, rad |
 //! | `skill` | a named skill, such as `KickLeft` |
 //!
+//! `monas_kinematics` computes where the links are.
+//!
 //! ```
 //! use monas_config::urdf;
 //!
@@ -38,8 +40,7 @@
 //! let (lamp, diagnostics) = urdf::read(&yase::Source::new("lamp.urdf", text));
 //! let lamp = lamp.ok_or("there are errors")?;
 //! assert_eq!((lamp.joints[0].limits.high, diagnostics.len()), (1.5, 0));
-//! let centre = lamp.centre_of_mass(&[std::f64::consts::FRAC_PI_2]);
-//! assert!((centre - nalgebra::Point3::new(0.2, 0.0, 0.1)).norm() < 1e-12);
+//! assert_eq!((lamp.links[1].offset, lamp.links[1].centre), ([0.0, 0.0, 0.1], [0.0, 0.0, 0.2]));
 //! # Ok::<(), &str>(())
 //! ```
 
@@ -51,7 +52,6 @@ use std::path::Path;
 use std::sync::Arc;
 
 use monas_robot::{Anatomy, Limits, Skill};
-use nalgebra::{Isometry3, Translation3, UnitQuaternion};
 use yase::{Diagnostic, Source};
 
 use crate::{AttributeRule, Element, ElementRule, Grammar, Kind, Values, paths, xml};
@@ -222,11 +222,9 @@ fn without_others(element: Element, grammar: &Grammar) -> Element {
     element.without_children().with_children(children)
 }
 
-/// The pose of an `origin`: its place, and the rotations about the fixed axes x, y and z.
-fn placement(origin: &Element, grammar: &Grammar, diagnostics: &mut Vec<Diagnostic>) -> Isometry3<f64> {
-    let [x, y, z] = numbers(origin, "xyz", grammar, diagnostics).unwrap_or_default();
-    let [roll, pitch, yaw] = numbers(origin, "rpy", grammar, diagnostics).unwrap_or_default();
-    Isometry3::from_parts(Translation3::new(x, y, z), UnitQuaternion::from_euler_angles(roll, pitch, yaw))
+/// The place of an `origin`, and how it is turned about the fixed axes x, y and z.
+fn placement(origin: &Element, grammar: &Grammar, diagnostics: &mut Vec<Diagnostic>) -> [[f64; 3]; 2] {
+    ["xyz", "rpy"].map(|key| numbers(origin, key, grammar, diagnostics).unwrap_or_default())
 }
 
 /// The numbers of an attribute, separated by blanks; otherwise an error.

@@ -6,7 +6,7 @@ use super::TidyFinding;
 use super::workspace::{Crate, Dependency, Workspace};
 
 /// Every crate of the product and its layer.
-const LAYERS: [(&str, u8); 36] = [
+const LAYERS: [(&str, u8); 37] = [
     ("monas-diagnostics", 0),
     ("monas-files", 0),
     ("narukom", 0),
@@ -19,6 +19,7 @@ const LAYERS: [(&str, u8); 36] = [
     ("monas-tape", 1),
     ("yase-codegen", 3),
     ("monas-gamecontroller", 2),
+    ("monas-kinematics", 2),
     ("yase-explore", 2),
     ("yase-export", 2),
     ("yase-reference", 2),
@@ -101,7 +102,7 @@ pub(crate) fn is_product(member: &Crate) -> bool {
 }
 
 fn is_body(member: &Crate) -> bool {
-    member.folder.starts_with("robots") && member.name != "monas-robot"
+    member.folder.starts_with("robots") && !LAYERS.iter().any(|(name, _)| *name == member.name)
 }
 
 fn layer_of(member: &Crate) -> Option<u8> {

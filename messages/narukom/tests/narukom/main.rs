@@ -1,4 +1,5 @@
 //! Hubs, blackboards and their promises.
+#![allow(clippy::unwrap_used)] // tests
 
 mod bounds;
 mod cycle;

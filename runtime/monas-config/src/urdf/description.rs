@@ -3,7 +3,6 @@
 use std::sync::Arc;
 
 use monas_robot::{Anatomy, Camera, Joint, Limits, Link, LinkMotion};
-use nalgebra::Point3;
 use yase::{Diagnostic, Source, Span};
 
 use super::tree::{JointElement, JointType, index_of, order};
@@ -95,15 +94,16 @@ impl Parts<'_, '_> {
         let inertial = element.children_named("inertial").next();
         let child = |name| inertial.and_then(|inertial| inertial.children_named(name).next());
         let mass = child("mass").and_then(|mass| Values::of(mass, self.grammar).number("value"));
-        let centre = child("origin")
-            .map(|origin| placement(origin, self.grammar, self.diagnostics).translation.vector);
+        let centre = child("origin").map(|origin| placement(origin, self.grammar, self.diagnostics)[0]);
+        let [offset, rotation] = joint.map(|joint| joint.placement).unwrap_or_default();
         Link {
             name: name_of(element).to_owned(),
             parent: None,
-            placement: joint.map(|joint| joint.placement).unwrap_or_default(),
+            offset,
+            rotation,
             motion: joint.and_then(|joint| self.motion(joint)),
             mass: mass.unwrap_or_default(),
-            centre: centre.map_or(Point3::origin(), Point3::from),
+            centre: centre.unwrap_or_default(),
         }
     }
 

@@ -1,7 +1,6 @@
 //! The joints of a description and the order of its links.
 
 use monas_robot::Limits;
-use nalgebra::{Isometry3, UnitVector3, Vector3};
 use yase::Diagnostic;
 
 use super::description::name_of;
@@ -32,8 +31,9 @@ pub(super) struct JointElement<'a> {
     /// The indices of the links.
     pub(super) parent: usize,
     pub(super) child: usize,
-    pub(super) placement: Isometry3<f64>,
-    pub(super) axis: UnitVector3<f64>,
+    /// Place and rotation of the child.
+    pub(super) placement: [[f64; 3]; 2],
+    pub(super) axis: [f64; 3],
     pub(super) limits: Limits,
     pub(super) speed: Option<f64>,
     pub(super) mimic: Option<Mimic<'a>>,
@@ -70,10 +70,10 @@ impl<'a> JointElement<'a> {
             parent: parent?,
             child: carried?,
             placement: child("origin")
-                .map_or(Isometry3::identity(), |origin| placement(origin, grammar, diagnostics)),
+                .map_or([[0.0; 3]; 2], |origin| placement(origin, grammar, diagnostics)),
             axis: child("axis")
                 .filter(|_| kind != JointType::Fixed)
-                .map_or(Vector3::x_axis(), |axis| direction(axis, grammar, diagnostics)),
+                .map_or(AHEAD, |axis| direction(axis, grammar, diagnostics)),
             limits,
             speed,
             mimic: child("mimic").and_then(|mimic| {
@@ -133,12 +133,18 @@ fn limits(
     (if kind == JointType::Continuous { unlimited } else { range }, speed)
 }
 
-fn direction(axis: &Element, grammar: &Grammar, diagnostics: &mut Vec<Diagnostic>) -> UnitVector3<f64> {
-    let Some(numbers) = numbers::<3>(axis, "xyz", grammar, diagnostics) else { return Vector3::x_axis() };
-    UnitVector3::try_new(Vector3::from(numbers), 1e-9).unwrap_or_else(|| {
+/// The axis of a joint that gives none.
+const AHEAD: [f64; 3] = [1.0, 0.0, 0.0];
+
+/// The unit vector of an axis.
+fn direction(axis: &Element, grammar: &Grammar, diagnostics: &mut Vec<Diagnostic>) -> [f64; 3] {
+    let Some(vector) = numbers::<3>(axis, "xyz", grammar, diagnostics) else { return AHEAD };
+    let length = vector.iter().map(|part| part * part).sum::<f64>().sqrt();
+    if length < 1e-9 || !length.is_finite() {
         diagnostics.push(axis.error("E0372", axis.name_span(), "the axis has no direction"));
-        Vector3::x_axis()
-    })
+        return AHEAD;
+    }
+    vector.map(|part| part / length)
 }
 
 /// The links in an order in which each one comes after the one that carries it, as indices, with

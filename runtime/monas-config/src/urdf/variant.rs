@@ -1,13 +1,12 @@
 //! Whether a robot is built like another one.
 
-use monas_robot::{Anatomy, Link};
-use nalgebra::Isometry3;
+use monas_robot::{Anatomy, Link, LinkMotion};
 use yase::{Diagnostic, Span};
 
 use super::description::Description;
 
-/// How far, m and rad, a link may be from where that of the model is.
-const SAME_PLACE: f64 = 1e-6;
+/// How far, m and rad, numbers may differ from those of the model.
+const SAME: f64 = 1e-6;
 
 /// What differs from a model and is not one robot's own: joints, lengths, axes, cameras, skills.
 pub(super) fn differences(description: &Description, model: &Anatomy) -> Vec<Diagnostic> {
@@ -51,28 +50,28 @@ impl Comparison<'_> {
     }
 
     fn links(&mut self) {
-        // What a displaced link carries is displaced with it.
-        let mut is_displaced = vec![false; self.model.links.len()];
-        for (index, expected) in self.model.links.iter().enumerate() {
-            if expected.parent.is_some_and(|parent| is_displaced[parent]) {
-                is_displaced[index] = true;
-                continue;
-            }
-            let Some(own) = self.description.anatomy.link(&expected.name) else {
+        let own = &self.description.anatomy;
+        for expected in &self.model.links {
+            let Some(index) = own.link(&expected.name) else {
                 let message = format!("the link `{}` of `{}` is missing", expected.name, self.model.model);
                 self.report(self.description.robot, message);
                 continue;
             };
-            let span = self.description.links[own];
-            let [here, there] = [(&self.description.anatomy, own), (self.model, index)].map(straight_pose);
-            let apart = (here.translation.vector - there.translation.vector).norm();
-            if apart.max(here.rotation.angle_to(&there.rotation)) > SAME_PLACE {
-                let [here, there] = [here, there].map(shown);
-                let model = &self.model.model;
-                is_displaced[index] = true;
-                let message = format!("`{}` is at {here}, in `{model}` at {there}", expected.name);
+            let (span, here) = (self.description.links[index], &own.links[index]);
+            let carriers = [(own, here.parent), (self.model, expected.parent)].map(carrier);
+            if carriers[0] != carriers[1] {
+                let [here, there] = carriers;
+                let message = format!(
+                    "`{here}` carries `{}`, in `{}` it is `{there}`",
+                    expected.name, self.model.model
+                );
                 self.report(span, message);
-            } else if !moves_alike(&self.description.anatomy.links[own], expected) {
+            } else if apart(here.offset, expected.offset).max(apart(here.rotation, expected.rotation)) > SAME
+            {
+                let (name, model) = (&expected.name, &self.model.model);
+                let message = format!("`{name}` is at {}, in `{model}` at {}", place(here), place(expected));
+                self.report(span, message);
+            } else if !moves_alike(here, expected) {
                 let message = format!("`{}` moves otherwise than in `{}`", expected.name, self.model.model);
                 self.report(span, message);
             }
@@ -95,25 +94,28 @@ impl Comparison<'_> {
     }
 }
 
-/// The pose of a link in the frame of the torso with all joints at zero.
-fn straight_pose((anatomy, link): (&Anatomy, usize)) -> Isometry3<f64> {
-    anatomy.pose_in_torso(link, Isometry3::identity(), &vec![0.0; anatomy.joints.len()])
+/// The name of the link that carries another one.
+fn carrier((anatomy, parent): (&Anatomy, Option<usize>)) -> &str {
+    parent.map_or("nothing", |parent| &anatomy.links[parent].name)
 }
 
-fn shown(pose: Isometry3<f64>) -> String {
-    // Adding zero makes a negative zero positive.
-    let [x, y, z] = <[f64; 3]>::from(pose.translation.vector).map(|it| it + 0.0);
-    let [roll, pitch, yaw] = <[f64; 3]>::from(pose.rotation.euler_angles()).map(|it| it + 0.0);
-    format!("xyz {x:.4} {y:.4} {z:.4}, rpy {roll:.4} {pitch:.4} {yaw:.4}")
+/// The greatest difference of two components.
+fn apart(one: [f64; 3], other: [f64; 3]) -> f64 {
+    one.iter().zip(other).map(|(one, other)| (one - other).abs()).fold(0.0, f64::max)
+}
+
+fn place(link: &Link) -> String {
+    let ([x, y, z], [roll, pitch, yaw]) = (link.offset, link.rotation);
+    format!("xyz {x} {y} {z}, rpy {roll} {pitch} {yaw}")
 }
 
 fn moves_alike(one: &Link, other: &Link) -> bool {
     match (one.motion, other.motion) {
         (None, None) => true,
         (Some(one), Some(other)) => {
-            let way = one.axis.into_inner() * one.factor - other.axis.into_inner() * other.factor;
-            let offset = (one.offset - other.offset).abs();
-            (one.joint, one.is_shift) == (other.joint, other.is_shift) && way.norm().max(offset) < SAME_PLACE
+            let way = |motion: LinkMotion| motion.axis.map(|part| part * motion.factor);
+            let difference = apart(way(one), way(other)).max((one.offset - other.offset).abs());
+            (one.joint, one.is_shift) == (other.joint, other.is_shift) && difference < SAME
         }
         _ => false,
     }

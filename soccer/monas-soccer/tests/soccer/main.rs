@@ -1,4 +1,5 @@
 //! Roles and players of the team.
+#![allow(clippy::unwrap_used)] // tests
 
 mod attacker;
 mod goalie;
