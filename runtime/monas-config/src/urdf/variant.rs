@@ -1,6 +1,6 @@
 //! Whether a robot is built like another one.
 
-use monas_robot::{Anatomy, Link, LinkMotion};
+use monas_robot::{Anatomy, Camera, Link, LinkMotion};
 use yase::{Diagnostic, Span};
 
 use super::description::Description;
@@ -85,13 +85,23 @@ impl Comparison<'_> {
             ("radio", own.radio != model.radio),
             ("leds", own.has_leds != model.has_leds),
             ("skills", own.skills != model.skills),
-            ("cameras", own.cameras != model.cameras),
+            ("cameras", cameras(own) != cameras(model)),
         ];
         for (what, _) in differs.into_iter().filter(|(_, differs)| *differs) {
             let message = format!("`monas` differs from that of `{}`: {what}", model.model);
             self.report(self.description.monas, message);
         }
     }
+}
+
+/// The cameras with the names of their links: a robot of its own may have further links.
+fn cameras(anatomy: &Anatomy) -> Vec<(&str, &str, [f64; 2])> {
+    let link = |camera: &Camera| camera.link.map_or("", |link| anatomy.links[link].name.as_str());
+    let described = |camera| {
+        let Camera { name, horizontal, vertical, .. }: &Camera = camera;
+        (name.as_str(), link(camera), [*horizontal, *vertical])
+    };
+    anatomy.cameras.iter().map(described).collect()
 }
 
 /// The name of the link that carries another one.

@@ -230,6 +230,11 @@ fn a_robot_of_its_own_may_differ_in_limits_and_masses_only() {
     let own = variant("upper=\"0.05\"", "upper=\"0.03\"").0.unwrap();
     assert_eq!(own.joints[0].limits.high, 0.03);
     assert_eq!(variant("value=\"2\"", "value=\"2.5\"").0.unwrap().links[1].mass, 2.5);
+    // A further link, before the others of the file.
+    let shell = "<link name=\"shell\"/><joint name=\"glue\" type=\"fixed\"><parent link=\"base\"/>\
+                 <child link=\"shell\"/></joint><joint name=\"turn\" type=\"continuous\">";
+    let own = variant("<joint name=\"turn\" type=\"continuous\">", shell).0.unwrap();
+    assert_ne!(own.cameras[0].link, model.cameras[0].link);
     let hint = "(limits, speeds, masses and the ranges of the walk are a robot's own)";
     for (from, to, message) in [
         (
