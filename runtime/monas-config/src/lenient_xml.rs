@@ -2,8 +2,8 @@
 //!
 //! The thesis writes `<agent Priority=1>` without quotes and several roots in a file, and closing
 //! tags may be missing. [`repair`] reads such a text tag by tag, reports errors, and writes a text
-//! that an XML parser accepts: values quoted, ampersands escaped, tags closed, comments and
-//! declarations dropped, one root around everything.
+//! that an XML parser accepts: values quoted, ampersands escaped, tags closed, comments,
+//! declarations and references to schemas dropped, one root around everything.
 
 use yase::{Diagnostic, Span};
 
@@ -12,6 +12,9 @@ const DEPTH: usize = 64;
 
 /// The root element added around everything.
 pub(crate) const ROOT: &str = "monas";
+
+/// Prefixes of attributes that name the schema and language of a file for editors: dropped.
+const EDITOR_PREFIXES: [&str; 3] = ["xml", "xmlns", "xsi"];
 
 /// A well-formed text, and diagnostics of the original.
 pub(crate) struct RepairedXml {
@@ -315,7 +318,7 @@ impl<'a> RepairWriter<'a> {
     }
 
     fn attribute(&mut self, seen: &mut Vec<&'a str>) {
-        let name = name_at(self.rest());
+        let (name, prefix) = qualified_name_at(self.rest());
         let span = Span::new(self.at, self.at + name.len());
         let after = self.source[span.end..].trim_start();
         let Some(value) = after.strip_prefix('=') else {
@@ -327,7 +330,16 @@ impl<'a> RepairWriter<'a> {
         let value_start = self.source.len() - value.trim_start().len();
         let repeated = seen.contains(&name);
         let length = self.out.text.len();
-        if repeated {
+        if let Some(prefix) = prefix {
+            if !EDITOR_PREFIXES.contains(&prefix) {
+                let message = format!("attribute `{name}` belongs to another namespace");
+                self.report(
+                    span,
+                    message,
+                    format!("a configuration has no namespaces: leave out `{prefix}:`"),
+                );
+            }
+        } else if repeated {
             let diagnostic = Diagnostic::error("E0307", span, format!("attribute `{name}` is repeated"));
             self.out.diagnostics.push(diagnostic.with_hint("remove one of them"));
         } else {
@@ -338,7 +350,7 @@ impl<'a> RepairWriter<'a> {
         }
         self.at = value_start;
         self.value(name);
-        if repeated {
+        if repeated || prefix.is_some() {
             self.take_back(length);
         }
     }
@@ -403,6 +415,15 @@ fn starts_name(text: &str) -> bool {
 fn name_at(text: &str) -> &str {
     let end = text.find(|c: char| !(c.is_alphanumeric() || matches!(c, '_' | '-' | '.')));
     &text[..end.unwrap_or(text.len())]
+}
+
+/// The name at the start of a text, with the prefix of its namespace, and that prefix.
+fn qualified_name_at(text: &str) -> (&str, Option<&str>) {
+    let prefix = name_at(text);
+    match text[prefix.len()..].strip_prefix(':').map(name_at) {
+        Some(local) if !local.is_empty() => (&text[..prefix.len() + 1 + local.len()], Some(prefix)),
+        _ => (prefix, None),
+    }
 }
 
 /// Whether a text is a name.

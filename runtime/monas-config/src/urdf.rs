@@ -84,7 +84,8 @@ pub fn read(source: &Arc<Source>) -> (Option<Anatomy>, Vec<Diagnostic>) {
 }
 
 /// Reads the file of a robot that is built like `model`, with its own limits, speeds, masses and
-/// ranges of the walk. Other joints, lengths, cameras and skills than those of `model` are errors.
+/// ranges of the walk. Other joints, lengths, cameras and skills than those of `model` are errors,
+/// joints that may move further or faster than those of `model` are warnings.
 pub fn load_variant(path: &Path, model: &Anatomy) -> (Option<Anatomy>, Vec<Diagnostic>) {
     match paths::read(path) {
         Ok(source) => read_variant(&source, model),
@@ -98,6 +99,9 @@ pub fn read_variant(source: &Arc<Source>, model: &Anatomy) -> (Option<Anatomy>, 
     let Some(description) = description else { return (None, diagnostics) };
     let differences = variant::differences(&description, model);
     let is_variant = differences.is_empty();
+    if is_variant {
+        diagnostics.extend(variant::excesses(&description, model));
+    }
     diagnostics.extend(differences);
     (is_variant.then_some(description.anatomy), diagnostics)
 }

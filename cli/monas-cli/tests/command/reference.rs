@@ -141,7 +141,10 @@ fn the_page_of_configurations_is_up_to_date() {
          `monas config schema` writes the same for editors, and `monas config show` prints the origin of each \
          value of a configuration.",
     );
-    let mut page = format!("# Configuration\n\n{introduction}\n");
+    let editors = wrapped("An editor checks and completes a file whose root element names the schema:");
+    let root = "```xml\n<agents xmlns:xsi=\"http://www.w3.org/2001/XMLSchema-instance\"\n        \
+                xsi:noNamespaceSchemaLocation=\"monas.xsd\">\n```";
+    let mut page = format!("# Configuration\n\n{introduction}\n\n{editors}\n\n{root}\n");
     let elements = schema["$defs"].as_object().expect("definitions");
     for (name, schema) in elements {
         add_element(name, schema.as_object().expect("a schema"), &mut page);

@@ -1,6 +1,6 @@
 //! Whether a robot is built like another one.
 
-use monas_robot::{Anatomy, Camera, Link, LinkMotion};
+use monas_robot::{Anatomy, Camera, Joint, Link, LinkMotion};
 use yase::{Diagnostic, Span};
 
 use super::description::Description;
@@ -17,6 +17,30 @@ pub(super) fn differences(description: &Description, model: &Anatomy) -> Vec<Dia
         comparison.body();
     }
     comparison.found
+}
+
+/// Warnings of joints, in the order of the model's, that may move further or faster than there.
+pub(super) fn excesses(description: &Description, model: &Anatomy) -> Vec<Diagnostic> {
+    let joints = description.anatomy.joints.iter().zip(&model.joints).zip(&description.joints);
+    let exceeding = joints.filter(|((own, model), _)| exceeds(own, model));
+    let warning = |((own, joint), span): ((&Joint, &Joint), &Span)| {
+        let message = format!("`{}` may move further or faster than in `{}`", own.name, model.model);
+        Diagnostic::warning("E0374", *span, message)
+            .with_hint(format!("its range there is {}", range(joint)))
+            .in_source(&description.source)
+    };
+    exceeding.map(warning).collect()
+}
+
+fn exceeds(own: &Joint, model: &Joint) -> bool {
+    let further = own.limits.low < model.limits.low - SAME || own.limits.high > model.limits.high + SAME;
+    let faster = model.speed.is_some_and(|speed| own.speed.is_none_or(|own| own > speed + SAME));
+    further || faster
+}
+
+fn range(joint: &Joint) -> String {
+    let speed = joint.speed.map_or(String::new(), |speed| format!(", its speed {speed}"));
+    format!("{} to {}{speed}", joint.limits.low, joint.limits.high)
 }
 
 struct Comparison<'a> {

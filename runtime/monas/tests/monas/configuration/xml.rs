@@ -52,6 +52,29 @@ fn texts_are_joined_and_entities_replaced() {
     assert_eq!(elements[0].text(), "one < <two>  three");
 }
 
+#[test]
+fn references_to_schemas_are_dropped_and_other_prefixes_are_errors() {
+    let schema =
+        "xmlns:xsi='http://www.w3.org/2001/XMLSchema-instance' xsi:noNamespaceSchemaLocation=\"a.xsd\"";
+    let text = format!("<a {schema} xml:lang=\"en\" x=1><b xmlns=\"urn:b\" y=2/></a>");
+    let elements = read(&text);
+    let x = &elements[0].attributes()[0];
+    assert_eq!((elements[0].attributes().len(), &*x.value, at(&text, x.value_span)), (1, "1", "1"));
+    let y = &elements[0].children()[0].attributes()[0];
+    assert_eq!((&*y.name, at(&text, y.name_span), at(&text, y.value_span)), ("y", "y", "2"));
+
+    let (elements, diagnostics) = parse("<a svg:x=1 svg:x=2 y=3/>");
+    let names: Vec<&str> = elements[0].attributes().iter().map(|given| &*given.name).collect();
+    let lines: Vec<String> = diagnostics.iter().map(ToString::to_string).collect();
+    let reported = |column| {
+        format!(
+            "a.xml:1:{column}: error[E0301]: attribute `svg:x` belongs to another namespace \
+             (a configuration has no namespaces: leave out `svg:`)"
+        )
+    };
+    assert_eq!((names, lines), (vec!["y"], vec![reported(4), reported(12)]));
+}
+
 /// A grammar with one element, which has an attribute of every kind.
 fn grammar() -> Grammar {
     let attribute = |key, kind| AttributeRule::new(key, kind, "");
@@ -157,6 +180,9 @@ fn pieces() -> impl Strategy<Value = String> {
         Just("<!D"),
         Just("x='ü'"),
         Just("xmlns"),
+        Just("xmlns:x"),
+        Just("xsi:y"),
+        Just("x:y"),
         Just("xml:a=1"),
         Just(" "),
         Just("\n"),
