@@ -33,9 +33,13 @@ pub struct RunHash {
 struct HashState {
     hasher: blake3::Hasher,
     messages: u64,
-    /// The hashed form of one message; reused.
-    record: Vec<u8>,
+    /// The hashed form of the messages that the hasher does not have yet.
+    pending: Vec<u8>,
 }
+
+/// The number of bytes hashed at once. BLAKE3 hashes its chunks of 1 KiB side by side if it is
+/// given many of them.
+const BLOCK: usize = 16 * 1024;
 
 impl RunHash {
     /// The hash of no messages.
@@ -46,7 +50,8 @@ impl RunHash {
     /// 64 hexadecimal digits, and the number of hashed messages. More messages may follow.
     pub fn finish(&self) -> (String, u64) {
         let state = self.shared.lock().unwrap_or_else(PoisonError::into_inner);
-        (state.hasher.finalize().to_hex().to_string(), state.messages)
+        let hash = state.hasher.clone().update(&state.pending).finalize();
+        (hash.to_hex().to_string(), state.messages)
     }
 }
 
@@ -62,15 +67,18 @@ impl Observer for RunHash {
 
 impl HashState {
     fn add(&mut self, Publication { host, publisher, topic, sample, .. }: Publication<'_>) {
-        self.record.clear();
-        self.record.extend_from_slice(&sample.header.published.as_nanos().to_le_bytes());
+        let pending = &mut self.pending;
+        pending.extend_from_slice(&sample.header.published.as_nanos().to_le_bytes());
         for text in [host, publisher, topic.path()] {
-            self.record.extend_from_slice(&(text.len() as u32).to_le_bytes());
-            self.record.extend_from_slice(text.as_bytes());
+            pending.extend_from_slice(&(text.len() as u32).to_le_bytes());
+            pending.extend_from_slice(text.as_bytes());
         }
-        self.record.extend_from_slice(&sample.header.sequence.to_le_bytes());
-        sample.message.encode_to(&mut self.record);
-        self.hasher.update(&self.record);
+        pending.extend_from_slice(&sample.header.sequence.to_le_bytes());
+        sample.message.encode_to(pending);
+        if pending.len() >= BLOCK {
+            self.hasher.update(pending);
+            pending.clear();
+        }
         self.messages += 1;
     }
 }
