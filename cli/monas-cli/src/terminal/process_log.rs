@@ -6,19 +6,21 @@ use std::path::PathBuf;
 use indicatif::MultiProgress;
 use monas::logger::{self, LogSettings, Logger, Severity};
 use monas_tape::ExistingFile;
-use tracing_subscriber::filter::LevelFilter;
+use tracing_subscriber::filter::{LevelFilter, Targets};
 use tracing_subscriber::prelude::*;
-use tracing_subscriber::{EnvFilter, Registry, reload};
+use tracing_subscriber::{Registry, reload};
 
-/// The filter without MONAS_LOG. Warnings of zenoh do not concern a run, and failures are reported
-/// as errors of the link.
-const USUAL: &str = "warn,zenoh=error";
+/// What is logged without MONAS_LOG: this level and graver ones. Warnings of zenoh do not concern a
+/// run, and failures are reported as errors of the link.
+fn usual(level: LevelFilter) -> Targets {
+    Targets::new().with_default(level).with_target("zenoh", LevelFilter::ERROR)
+}
 
 /// The log of this process: filtered lines on standard error, and the log that `--log` configures.
 #[derive(Clone)]
 pub(crate) struct ProcessLog {
     logger: Logger,
-    usual: reload::Handle<EnvFilter, Registry>,
+    filter: reload::Handle<Targets, Registry>,
     bars: MultiProgress,
     /// Whether MONAS_LOG or an option chose what is logged on standard error.
     is_chosen: bool,
@@ -29,12 +31,10 @@ impl ProcessLog {
     pub(crate) fn begin(bars: &MultiProgress) -> Option<ProcessLog> {
         let asked = std::env::var("MONAS_LOG");
         let is_chosen = asked.is_ok();
-        let asked = asked.unwrap_or_else(|_| USUAL.into());
-        let (filter, mistake) = match EnvFilter::try_new(asked) {
-            Ok(filter) => (filter, None),
-            Err(mistake) => (EnvFilter::new("warn"), Some(mistake)),
-        };
-        let (filter, usual) = reload::Layer::new(filter);
+        let asked = asked.map_or(Ok(usual(LevelFilter::WARN)), |text| text.parse());
+        let mistake = asked.as_ref().err().map(ToString::to_string);
+        let filter = asked.unwrap_or_else(|_| usual(LevelFilter::WARN));
+        let (filter, handle) = reload::Layer::new(filter);
         let above = bars.clone();
         let writer = move || ProgressAwareStderr(above.clone());
         let lines = tracing_subscriber::fmt::layer().with_writer(writer).with_ansi(false).without_time();
@@ -46,14 +46,14 @@ impl ProcessLog {
         if let Some(mistake) = mistake {
             tracing::warn!("MONAS_LOG is invalid, warnings and errors are logged: {mistake}");
         }
-        is_ours.then(|| ProcessLog { logger, usual, bars: bars.clone(), is_chosen })
+        is_ours.then(|| ProcessLog { logger, filter: handle, bars: bars.clone(), is_chosen })
     }
 
     /// Logs lines of this level and graver ones on standard error, unless MONAS_LOG is set.
     pub(crate) fn limit(&mut self, level: LevelFilter) {
         if !std::mem::replace(&mut self.is_chosen, true) {
             // This fails only after the log has ended.
-            let _ = self.usual.reload(EnvFilter::new(format!("{level},zenoh=error")));
+            let _ = self.filter.reload(usual(level));
         }
     }
 
@@ -78,7 +78,7 @@ impl ProcessLog {
         })?;
         if !self.is_chosen {
             // This fails only after the log has ended.
-            let _ = self.usual.reload(EnvFilter::new("off"));
+            let _ = self.filter.reload(Targets::new());
         }
         Ok(file)
     }
