@@ -102,3 +102,4 @@ pub use language::DataValue;
 pub use read::read;
 pub use session::{NoPlatform, Platform, ScxmlEvent, ScxmlEventKind, Session, SessionError};
 pub use write::write;
+pub use xml::escape;

@@ -85,9 +85,18 @@ pub(crate) fn attribute(text: &mut String, name: &str, value: &str) {
     text.push('"');
 }
 
-/// Adds a text so that it reads back unchanged. In attributes, white space other than a blank is
-/// escaped, since it would read back as blanks.
-pub(crate) fn escape(value: &str, in_attribute: bool, text: &mut String) {
+/// Appends a value to XML text so that it reads back unchanged: as the content of an element, or as
+/// an attribute between double quotes. In attributes, white space other than a blank is escaped,
+/// since it would read back as blanks.
+///
+/// ```
+/// let mut text = String::from("<note of=\"");
+/// yase_scxml::escape("a \"b\"", true, &mut text);
+/// text.push_str("\">");
+/// yase_scxml::escape("1 < 2", false, &mut text);
+/// assert_eq!(text, "<note of=\"a &quot;b&quot;\">1 &lt; 2");
+/// ```
+pub fn escape(value: &str, in_attribute: bool, text: &mut String) {
     for character in value.chars() {
         match character {
             '<' => text.push_str("&lt;"),

@@ -6,7 +6,6 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use quick_xml::escape;
 use yase::{Diagnostic, Source};
 
 use super::element::{Attribute, Element};
@@ -130,6 +129,7 @@ impl XmlEditor {
     fn value_splice(&self, given: &Attribute, value: &str) -> (Range<usize>, String) {
         let value = attribute_text(value);
         match self.quote(given) {
+            Some('\'') => (given.value_span.start..given.value_span.end, value.replace('\'', "&apos;")),
             Some(_) => (given.value_span.start..given.value_span.end, value),
             None => (given.value_span.start..given.value_span.end, format!("\"{value}\"")),
         }
@@ -221,13 +221,16 @@ fn written(name: &str, content: &ElementContent<'_>) -> String {
     }
 }
 
-/// A value as written between quotes. Readers normalize an unescaped newline to a space.
+/// A value as written between double quotes.
 pub(crate) fn attribute_text(value: &str) -> String {
-    let escaped = escape::escape(value).replace('\t', "&#9;").replace('\n', "&#10;");
-    escaped.replace('\r', "&#13;")
+    let mut escaped = String::with_capacity(value.len());
+    yase_scxml::escape(value, true, &mut escaped);
+    escaped
 }
 
 /// A text as written in an element.
 pub(crate) fn element_text(text: &str) -> String {
-    escape::partial_escape(text).replace('\r', "&#13;")
+    let mut escaped = String::with_capacity(text.len());
+    yase_scxml::escape(text, false, &mut escaped);
+    escaped
 }

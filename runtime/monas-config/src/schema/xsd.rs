@@ -2,10 +2,9 @@
 
 use std::fmt::Write;
 
-use quick_xml::escape::escape;
-
 use super::super::element::camel_case;
 use super::super::grammar::{AttributeRule, ElementRule, Grammar, Kind};
+use super::super::xml_editor::{attribute_text, element_text};
 
 const HEAD: &str = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n\
     <!-- What a configuration of Monas may hold. Written by `monas config schema`. -->\n\
@@ -102,7 +101,7 @@ const fn base(kind: &Kind) -> &'static str {
 
 fn facets(out: &mut String, depth: usize, kind: &Kind) {
     let mut facet = |name: &str, value: &str| {
-        line(out, depth, &format!("<xs:{name} value=\"{}\"/>", escape(value)));
+        line(out, depth, &format!("<xs:{name} value=\"{}\"/>", attribute_text(value)));
     };
     match kind {
         Kind::Flag => ["1", "0", "true", "false"].iter().for_each(|word| facet("enumeration", word)),
@@ -131,7 +130,7 @@ fn documentation(out: &mut String, depth: usize, doc: &str) {
         depth,
         &format!(
             "<xs:annotation><xs:documentation>{}</xs:documentation></xs:annotation>",
-            escape(doc.as_str())
+            element_text(&doc)
         ),
     );
 }
