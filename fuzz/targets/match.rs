@@ -1,30 +1,4 @@
-//! Match files: arbitrary text with references to existing and missing files, with an empty
-//! registry.
+//! The target `match`: see its module in `parser-tests`.
 #![no_main]
 
-use std::sync::LazyLock;
-
-use libfuzzer_sys::fuzz_target;
-use monas::Registry;
-use monas_fuzz::assert_findings_fit;
-use monas_match::MatchSource;
-use tempfile::TempDir;
-
-/// A folder with files that a match can refer to.
-static FOLDER: LazyLock<TempDir> = LazyLock::new(|| {
-    let folder = tempfile::tempdir().expect("there is room for a folder");
-    let role = "<agents><agent name=\"a\"/></agents>";
-    for (name, text) in [("role.xml", role), ("field.xml", "<field/>"), ("simulator.xml", "<simulator/>")] {
-        std::fs::write(folder.path().join(name), text).expect("there is room for a file");
-    }
-    folder
-});
-
-fuzz_target!(|text: &str| {
-    let path = FOLDER.path().join("match.xml");
-    std::fs::write(&path, text).expect("there is room for a file");
-    if let Err(findings) = MatchSource::load(&path, &Registry::empty()) {
-        assert!(!findings.is_empty(), "it is refused without a reason");
-        assert_findings_fit(text, &findings);
-    }
-});
+libfuzzer_sys::fuzz_target!(|data: &[u8]| parser_tests::match_file(data));

@@ -1,28 +1,4 @@
-//! Model files of all kinds: findings are valid, and a model written in a lossless format reads
-//! back as the same model.
+//! The target `model`: see its module in `parser-tests`.
 #![no_main]
 
-use aseme_models::convert::{self, Format, Model};
-use libfuzzer_sys::fuzz_target;
-use monas_fuzz::assert_findings_fit;
-use yase::Source;
-
-fuzz_target!(|text: &str| {
-    let (found, findings) = convert::read(&Source::new("model", text));
-    assert_findings_fit(text, &findings);
-    let Some((model, _)) = found else { return assert!(!findings.is_empty()) };
-    for (_, format) in Format::WORDS {
-        match model.write(format, text) {
-            Ok(written) if written.lost.is_empty() && !matches!(format, Format::Role | Format::Rust) && !matches!(model, Model::Role(_)) => {
-                let (again, findings) = convert::read(&Source::new("again", written.text.as_str()));
-                assert_findings_fit(&written.text, &findings);
-                let again = again.map(|(model, _)| model);
-                assert_eq!(again.as_ref(), Some(&model), "{format:?}\n{}", written.text);
-            }
-            Ok(_) => {}
-            Err(refused) => assert!(!refused.is_empty(), "{format:?}"),
-        }
-    }
-    let (_, findings) = aseme_models::statechart_of(&Source::new("model", text));
-    assert_findings_fit(text, &findings);
-});
+libfuzzer_sys::fuzz_target!(|data: &[u8]| parser_tests::model(data));

@@ -1,16 +1,4 @@
-//! Module files: the note is read or rejected with a reason, and a note that was read is equal
-//! after writing and reading it again.
+//! The target `module`: see its module in `parser-tests`.
 #![no_main]
 
-use libfuzzer_sys::fuzz_target;
-use monas_module::read_fingerprint;
-
-fuzz_target!(|bytes: &[u8]| {
-    match read_fingerprint(bytes) {
-        Ok(note) => {
-            assert!(!note.module().is_empty(), "{note:?}");
-            assert_eq!(note.to_string().lines().count(), note.fields().count(), "{note:?}");
-        }
-        Err(reason) => assert!(!reason.is_empty()),
-    }
-});
+libfuzzer_sys::fuzz_target!(|data: &[u8]| parser_tests::module(data));

@@ -1,29 +1,4 @@
-//! Roles: findings are valid, entries lie within the text, and the resulting chart can be printed,
-//! drawn and checked.
+//! The target `role`: see its module in `parser-tests`.
 #![no_main]
 
-use aseme::SrmFile;
-use libfuzzer_sys::fuzz_target;
-use monas_fuzz::assert_findings_fit;
-use yase::{Source, TypeEnvironment};
-
-/// Charts with more nodes than this are not drawn, to save time.
-const DRAWN: usize = 2000;
-
-fuzz_target!(|text: &str| {
-    let (file, _) = SrmFile::parse(text);
-    assert_eq!(file.text(), text);
-    for entry in file.entries() {
-        assert!(text.get(entry.span.start..entry.span.end).is_some(), "{entry:?}");
-    }
-    let (chart, findings) = aseme_models::statechart_of(&Source::new("role.srm", text));
-    assert_findings_fit(text, &findings);
-    if chart.nodes().len() <= DRAWN {
-        assert!(!aseme::to_text(&chart).is_empty());
-        assert!(yase_export::to_svg(&chart).ends_with("</svg>\n"));
-        assert!(aseme::to_json(&chart).is_object());
-        if let Err(findings) = chart.compile(&TypeEnvironment::default()) {
-            assert!(!findings.is_empty());
-        }
-    }
-});
+libfuzzer_sys::fuzz_target!(|data: &[u8]| parser_tests::role(data));
