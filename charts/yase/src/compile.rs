@@ -396,6 +396,8 @@ pub(crate) struct ScopedTimer {
 pub(crate) struct NodeSets {
     pub(crate) starts: BitSet,
     pub(crate) eventless: BitSet,
+    /// Those of `eventless` whose transitions all wait until the own activity has returned.
+    pub(crate) awaiting_return: BitSet,
     pub(crate) triggered: BitSet,
     pub(crate) deferring: BitSet,
 }

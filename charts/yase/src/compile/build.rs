@@ -12,9 +12,9 @@ use crate::compile::paths::PathIndex;
 use crate::compile::segments::CompiledSegment;
 use crate::compile::{
     ArrivalCondition, BranchRange, BranchWeight, CandidatePath, ChoiceNode, CompiledChart, CompiledNode,
-    CompoundTransition, ErrorEvents, EventFilter, HistoryNode, JoinNode, LateDrawTree, NodeIndex, NodeOrder,
-    NodeSets, Scope, ScopedGuard, ScopedTimer, SegmentNode, entries, events, scripts, selection_order,
-    selection_table,
+    CompletionGate, CompoundTransition, ErrorEvents, EventFilter, HistoryNode, JoinNode, LateDrawTree,
+    NodeIndex, NodeOrder, NodeSets, Scope, ScopedGuard, ScopedTimer, SegmentNode, entries, events, scripts,
+    selection_order, selection_table,
 };
 use crate::diagnostic::{Diagnostic, Suggestions};
 use crate::expression::{
@@ -407,6 +407,9 @@ impl ChartCompiler<'_> {
         NodeSets {
             starts: set(&|state| state.kind == NodeKind::Start),
             eventless: selection_table::eventless_nodes(states, &self.branches, &self.guards, eventless),
+            awaiting_return: set(&|state| {
+                matches!(selection_table::gate(state, &self.branches), CompletionGate::Returned(_))
+            }),
             triggered: set(&|state| !state.triggered.is_empty()),
             deferring: set(&|state| !state.defer.is_empty()),
         }

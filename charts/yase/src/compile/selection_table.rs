@@ -48,7 +48,7 @@ pub(super) fn entries(
     states.iter().enumerate().map(entry).collect()
 }
 
-fn gate(state: &CompiledNode, branches: &[SegmentNode]) -> CompletionGate {
+pub(super) fn gate(state: &CompiledNode, branches: &[SegmentNode]) -> CompletionGate {
     let waits = |branch: &SegmentNode| branch.condition == EnablingCondition::Completed;
     if state.eventless.is_empty() || !alternatives(state.eventless, branches).all(waits) {
         return CompletionGate::Open;

@@ -85,7 +85,12 @@ impl<H: Host> Macrostep<'_, H> {
 
     #[inline]
     fn opens(&mut self, branch: &SegmentNode, search: BranchQuery<'_>) -> bool {
-        self.condition_holds(branch, search) && branch.guard.is_none_or(|guard| self.evaluate_guard(guard))
+        let holds = match branch.condition {
+            EnablingCondition::None => true,
+            EnablingCondition::Completed if search.is_complete => true,
+            _ => self.condition_holds(branch, search),
+        };
+        holds && branch.guard.is_none_or(|guard| self.evaluate_guard(guard))
     }
 
     /// Whether a complete path is not blocked by a running activity.
@@ -101,12 +106,10 @@ impl<H: Host> Macrostep<'_, H> {
         false
     }
 
-    #[inline]
     pub(crate) fn condition_holds(&self, branch: &SegmentNode, search: BranchQuery<'_>) -> bool {
         self.allows(branch.condition, search)
     }
 
-    #[inline]
     fn allows(&self, condition: EnablingCondition, search: BranchQuery<'_>) -> bool {
         let chart = self.chart;
         let (Some(place), occurrence) = (search.state, search.occurrence) else { return true };

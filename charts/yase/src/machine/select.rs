@@ -32,12 +32,16 @@ impl<H: Host> Macrostep<'_, H> {
         }
     }
 
-    /// The configuration does not change during the visit, so its words are read once.
+    /// The configuration does not change during the visit, so its words are read once. States that
+    /// wait for a running activity are not examined.
     fn visit(&mut self, occurrence: Option<&PoppedEvent>) {
         let sets = &self.chart.node_sets;
         let sources = if occurrence.is_some() { &sets.triggered } else { &sets.eventless };
         for word in 0..sources.word_count() {
             let mut nodes = self.run.active.word(word) & sources.word(word);
+            if occurrence.is_none() {
+                nodes &= !(self.run.running.word(word) & sets.awaiting_return.word(word));
+            }
             while nodes != 0 {
                 let index = word as u32 * u64::BITS + nodes.trailing_zeros();
                 nodes &= nodes - 1;
@@ -119,9 +123,11 @@ impl<H: Host> Macrostep<'_, H> {
     /// takes no transition without an event.
     #[inline]
     pub(crate) fn is_frozen(&self, place: NodeIndex) -> bool {
-        if self.run.pending.is_empty() && self.run.queues.held.is_empty() {
-            return false;
-        }
+        !(self.run.pending.is_empty() && self.run.queues.held.is_empty()) && self.is_about_to_be_left(place)
+    }
+
+    #[inline(never)]
+    fn is_about_to_be_left(&self, place: NodeIndex) -> bool {
         let leaves = |compound: CompoundTransitionId| self.compound(compound).leaves(place);
         self.run.has_pending_exit(self.chart, place)
             || self.run.queues.held.iter().any(|held| held.compounds.iter().copied().any(leaves))
