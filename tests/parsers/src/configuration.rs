@@ -2,10 +2,11 @@
 
 use std::path::Path;
 
-use crate::{assert_findings_fit, text_of};
 use monas::Registry;
 use monas::config::{self, Element, xml};
 use yase::Source;
+
+use crate::{assert_findings_fit, text_of};
 
 /// Checks the documented guarantees for one input.
 pub fn configuration(data: &[u8]) {

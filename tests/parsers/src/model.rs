@@ -1,9 +1,10 @@
 //! Model files of all kinds: findings are valid, and a model written in a lossless format reads
 //! back as the same model.
 
-use crate::{assert_findings_fit, text_of};
 use aseme_models::convert::{self, Format, Model};
 use yase::Source;
+
+use crate::{assert_findings_fit, text_of};
 
 /// Checks the documented guarantees for one input.
 pub fn model(data: &[u8]) {

@@ -1,7 +1,8 @@
 //! State paths: a parsed path prints as a path that parses to the same.
 
-use crate::{assert_findings_fit, text_of};
 use aseme::path::Path;
+
+use crate::{assert_findings_fit, text_of};
 
 /// Checks the documented guarantees for one input.
 pub fn path(data: &[u8]) {

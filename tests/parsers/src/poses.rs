@@ -1,9 +1,10 @@
 //! Special actions: findings fit, there are poses exactly if none is an error, and each angle is of
 //! a joint and within its limits.
 
-use crate::{assert_findings_fit, text_of};
 use monas_config::poses;
 use yase::{Diagnostic, Source};
+
+use crate::{assert_findings_fit, text_of};
 
 /// Checks the documented guarantees for one input.
 pub fn poses(data: &[u8]) {

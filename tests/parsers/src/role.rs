@@ -1,9 +1,10 @@
 //! Roles: findings are valid, entries lie within the text, and the resulting chart can be printed,
 //! drawn and checked.
 
-use crate::{assert_findings_fit, text_of};
 use aseme::SrmFile;
 use yase::{Source, TypeEnvironment};
+
+use crate::{assert_findings_fit, text_of};
 
 /// Charts with more nodes than this are not drawn, to save time.
 const DRAWN: usize = 2000;

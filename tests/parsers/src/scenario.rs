@@ -2,9 +2,10 @@
 
 use std::sync::LazyLock;
 
-use crate::{assert_findings_fit, text_of};
 use aseme_verify::scenario::ScenarioText;
 use yase::{CompiledChart, Source, TypeEnvironment};
+
+use crate::{assert_findings_fit, text_of};
 
 /// Checks the documented guarantees for one input.
 pub fn scenario(data: &[u8]) {

@@ -3,9 +3,10 @@
 
 use std::time::Duration;
 
-use crate::{assert_findings_fit, text_of};
 use yase::{Source, Timestamp};
 use yase_scxml::{NoPlatform, ScxmlEvent, Session};
+
+use crate::{assert_findings_fit, text_of};
 
 /// Checks the documented guarantees for one input.
 pub fn scxml(data: &[u8]) {

@@ -1,10 +1,11 @@
 //! Topic paths, subscription patterns and access lists: each is accepted or rejected with an error,
 //! and a list allows what its valid lines allow.
 
-use crate::text_of;
 use monas_link::AccessList;
 use monas_robot as _;
 use narukom::Hub;
+
+use crate::text_of;
 
 /// Checks the documented guarantees for one input.
 pub fn topic(data: &[u8]) {

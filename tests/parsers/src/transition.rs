@@ -3,7 +3,6 @@
 
 use std::collections::BTreeSet;
 
-use crate::{assert_findings_fit, text_of};
 use yase::diagnostic::Suggestions;
 use yase::expression::{
     EventInterner, NameScope, ScriptInterner, parse_actions, parse_condition, parse_transition,
@@ -13,6 +12,8 @@ use yase::vocabulary::{
     Enumeration, FieldEntry, FieldId, FunctionEntry, FunctionId, MessageEntry, TopicEntry, TopicId,
     TopicKind, TypeEnvironment, ValueType,
 };
+
+use crate::{assert_findings_fit, text_of};
 
 /// Checks the documented guarantees for one input.
 pub fn transition(data: &[u8]) {

@@ -1,9 +1,10 @@
 //! Descriptions of robots: findings fit, there is an anatomy exactly if none is an error, each link
 //! comes after the one that carries it, and each moves with a joint of the anatomy.
 
-use crate::{assert_findings_fit, text_of};
 use monas_config::urdf;
 use yase::{Diagnostic, Source};
+
+use crate::{assert_findings_fit, text_of};
 
 /// Checks the documented guarantees for one input.
 pub fn urdf(data: &[u8]) {
