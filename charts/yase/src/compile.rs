@@ -396,7 +396,8 @@ pub(crate) struct ScopedTimer {
 pub(crate) struct NodeSets {
     pub(crate) starts: BitSet,
     pub(crate) eventless: BitSet,
-    /// Those of `eventless` whose transitions all wait until the own activity has returned.
+    /// The states whose transitions without a trigger all wait until the state's activity has
+    /// returned.
     pub(crate) awaiting_return: BitSet,
     pub(crate) triggered: BitSet,
     pub(crate) deferring: BitSet,

@@ -11,7 +11,7 @@ use yase::Source;
 const LOGGER: &str = include_str!("../../listings/4.5.xml");
 const POSES: &str = include_str!("../../listings/4.10.xml");
 
-fn map<const N: usize>(values: [(&str, f64); N]) -> BTreeMap<String, f64> {
+fn map<V, const N: usize>(values: [(&str, V); N]) -> BTreeMap<String, V> {
     values.into_iter().map(|(key, value)| (key.to_owned(), value)).collect()
 }
 
@@ -103,6 +103,13 @@ fn only_the_value_changes_in_any_context() {
         config.set_element("a", 5, false).unwrap();
         assert_eq!(config.text(), expected);
     }
+}
+
+#[test]
+fn an_apostrophe_does_not_end_a_value_between_single_quotes() {
+    let mut config = XmlConfig::from_text("a.xml", "<a x='1' y=\"2\"/>");
+    config.set_attributes("a", &map(["x", "y"].map(|key| (key, String::from("it's")))), false).unwrap();
+    assert_eq!(config.text(), "<a x='it&apos;s' y=\"it's\"/>");
 }
 
 #[test]
