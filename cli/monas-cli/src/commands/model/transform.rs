@@ -99,7 +99,7 @@ fn chart(arguments: &TransformArguments, console: &mut CommandOutput<'_>) -> Res
     let chart = valid_chart(&arguments.file, format, console)?;
     let text = match format {
         Format::Text => aseme::to_text(&chart),
-        Format::Json => format!("{}\n", aseme::to_json(&chart)),
+        Format::Json => format!("{}\n", serde_json::json!(aseme::to_json(&chart))),
     };
     write_text(arguments.output.as_deref(), &text, format, console)
 }
