@@ -88,7 +88,7 @@ pub(crate) fn nodes(
             None => find(old, new, node, &matches, &names),
         };
     }
-    resolve_ambiguities(old, new, &mut matches);
+    resolve_ambiguities(new, &mut matches);
     matches
 }
 
@@ -174,7 +174,7 @@ fn within<'p>(side: NamedChart<'_>, places: &'p [NodeIndex], outer: NodeId) -> &
 
 /// A node claimed by several old nodes is matched with the one that has its path, or with none.
 /// Replacements supplied by the caller take precedence.
-fn resolve_ambiguities(old: NamedChart<'_>, new: NamedChart<'_>, matches: &mut [NodeMatch]) {
+fn resolve_ambiguities(new: NamedChart<'_>, matches: &mut [NodeMatch]) {
     let mut claims = vec![0_u32; new.statechart().nodes().len()];
     for found in matches.iter() {
         if let NodeMatch::Kept(node) | NodeMatch::Moved(node) = found {
@@ -188,7 +188,6 @@ fn resolve_ambiguities(old: NamedChart<'_>, new: NamedChart<'_>, matches: &mut [
             *found = NodeMatch::Gone(MismatchReason::Ambiguous);
         }
     }
-    debug_assert_eq!(matches.len(), old.statechart().nodes().len());
 }
 
 /// The counterpart of every segment: between the counterparts of its ends, with an equal expression
