@@ -23,7 +23,9 @@ mod team_play;
 pub use ball_knowledge::{BallKnowledge, TODAY};
 pub use localisation::{Kidnappings, PoseErrors, kidnap, pose_errors, quantile};
 pub use row::{MatchRow, play};
-pub use season::{SEASON_LENGTH, SEASON_SEEDS, SHORT_LENGTH, SHORT_SEEDS, SeasonTable, season, short_rows};
+pub use season::{
+    SEASON_LENGTH, SEASON_SEEDS, SHORT_LENGTH, SHORT_SEEDS, SeasonTable, check_season, season, short_rows,
+};
 pub use team_play::{PassCounts, StateTime, TeamPlay, TeamPlayObserver};
 
 /// A match file of the season.

@@ -9,7 +9,7 @@ use std::time::Duration;
 use crate::{
     ATTACK, ATTACK_LOSS20, ATTACK_LOSS50, ATTACK_RED, ATTACK_RED_LOSS20, ATTACK_RED_LOSS50, ATTACK_STANDING,
     DICE, Kidnappings, MATCH, MatchRow, NO_GOALIE, PassCounts, PoseErrors, STANDING, VARIANTS, Variant,
-    kidnap, play, pose_errors, quantile,
+    kidnap, play, pose_errors, quantile, root,
 };
 
 /// The length of a match of the season.
@@ -47,16 +47,33 @@ struct SeasonPoses {
 /// The diagnostics of the files of the season, or the failure.
 pub fn season(report: impl Fn(&MatchRow) + Sync) -> Result<SeasonTable, String> {
     let table = SeasonTable::play(&VARIANTS, SEASON_SEEDS, SEASON_LENGTH, report)?;
-    let mut poses = SeasonPoses::default();
-    for seed in POSE_SEEDS {
-        let PoseErrors { places, turns } = pose_errors(&MATCH, seed, SEASON_LENGTH)?;
-        poses.errors.places.extend(places);
-        poses.errors.turns.extend(turns);
-        let Kidnappings { recoveries, lost } = kidnap(&MATCH, seed, SEASON_LENGTH)?;
-        poses.kidnappings.recoveries.extend(recoveries);
-        poses.kidnappings.lost += lost;
-    }
+    let seeds: Vec<u64> = POSE_SEEDS.collect();
+    let halves = seeds.split_at(seeds.len() / 2);
+    let (first, second) = std::thread::scope(|threads| {
+        let other = threads.spawn(|| SeasonPoses::of(halves.1));
+        (SeasonPoses::of(halves.0), other.join())
+    });
+    let mut poses = first?;
+    poses.append(second.map_err(|_| "a match with kidnapped robots panicked")??);
     Ok(SeasonTable { poses: Some(poses), ..table })
+}
+
+/// Plays a season and compares it with its golden table; returns its text.
+///
+/// # Errors
+/// The first line that differs, the figures that violate their bounds, or why it cannot be played.
+pub fn check_season(report: impl Fn(&MatchRow) + Sync) -> Result<String, String> {
+    let path = root().join("tests/golden/season.txt");
+    let golden = std::fs::read_to_string(path).map_err(|error| error.to_string())?;
+    let text = season(report)?.checked_text()?;
+    let differs = |(now, before): &(&str, &str)| now != before;
+    match text.lines().zip(golden.lines()).find(differs) {
+        Some((now, before)) => Err(format!("the season differs:\n  was {before}\n  is  {now}")),
+        None if text.len() != golden.len() => {
+            Err("the season has more or fewer lines than its golden table".into())
+        }
+        None => Ok(text),
+    }
 }
 
 fn play_all(
@@ -99,6 +116,23 @@ pub fn short_rows() -> Result<String, String> {
 }
 
 impl SeasonPoses {
+    /// Plays the matches with these seeds.
+    fn of(seeds: &[u64]) -> Result<SeasonPoses, String> {
+        let mut poses = SeasonPoses::default();
+        for &seed in seeds {
+            let errors = pose_errors(&MATCH, seed, SEASON_LENGTH)?;
+            poses.append(SeasonPoses { errors, kidnappings: kidnap(&MATCH, seed, SEASON_LENGTH)? });
+        }
+        Ok(poses)
+    }
+
+    fn append(&mut self, other: SeasonPoses) {
+        self.errors.places.extend(other.errors.places);
+        self.errors.turns.extend(other.errors.turns);
+        self.kidnappings.recoveries.extend(other.kidnappings.recoveries);
+        self.kidnappings.lost += other.kidnappings.lost;
+    }
+
     fn verdicts(&self) -> Vec<FigureCheck> {
         let at_most = |what, value: Option<f64>, bound| {
             // Without a value the bound does not hold.
@@ -192,6 +226,18 @@ impl SeasonTable {
             );
         }
         text
+    }
+
+    /// The text of a season whose figures are all within their bounds.
+    ///
+    /// # Errors
+    /// The text, and the figures that violate their bounds.
+    pub fn checked_text(&self) -> Result<String, String> {
+        let (text, failures) = (self.text(), self.failures());
+        match failures.is_empty() {
+            true => Ok(text),
+            false => Err(format!("{text}\nnot what it must come to:\n{}", failures.join("\n"))),
+        }
     }
 
     /// The figures that violate their bounds.

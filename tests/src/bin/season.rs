@@ -10,8 +10,8 @@ use std::process::ExitCode;
 use std::time::Duration;
 
 use monas_tests::{
-    MatchRow, OTHER_VARIANTS, SeasonTable, VARIANTS, Variant, kidnap, play, pose_errors, quantile, root,
-    season, short_rows,
+    MatchRow, OTHER_VARIANTS, SeasonTable, VARIANTS, Variant, check_season, kidnap, play, pose_errors,
+    quantile, root, season, short_rows,
 };
 
 fn main() -> ExitCode {
@@ -91,39 +91,16 @@ fn game(variant: &str, seed: &str, seconds: &str) -> Result<(&'static Variant, u
     Ok((variant, seed, Duration::from_secs(seconds)))
 }
 
-fn played() -> Result<String, String> {
-    let table = season(|row| eprintln!("{row}"))?;
-    let text = table.text();
-    let failures = table.failures();
-    match failures.is_empty() {
-        true => Ok(text),
-        false => Err(format!("{text}\nnot what it must come to:\n{}", failures.join("\n"))),
-    }
-}
-
 fn write() -> Result<(), String> {
     let short = short_rows()?;
     std::fs::write(root().join("tests/golden/short.txt"), short).map_err(|error| error.to_string())?;
-    let text = played()?;
+    let text = season(|row| eprintln!("{row}"))?.checked_text()?;
     print!("{text}");
     std::fs::write(root().join("tests/golden/season.txt"), text).map_err(|error| error.to_string())
 }
 
 fn check() -> Result<(), String> {
-    let golden =
-        std::fs::read_to_string(root().join("tests/golden/season.txt")).map_err(|error| error.to_string())?;
-    let text = played()?;
-    let differs = |(now, before): &(&str, &str)| now != before;
-    let first = text.lines().zip(golden.lines()).find(differs);
-    match first {
-        Some((now, before)) => Err(format!("the season differs:\n  was {before}\n  is  {now}")),
-        None if text.len() != golden.len() => {
-            Err("the season has more or fewer lines than its golden table".into())
-        }
-        None => {
-            print!("{text}");
-            println!("\nthe season is as its golden table says");
-            Ok(())
-        }
-    }
+    print!("{}", check_season(|row| eprintln!("{row}"))?);
+    println!("\nthe season is as its golden table says");
+    Ok(())
 }

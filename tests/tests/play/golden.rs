@@ -13,3 +13,12 @@ fn two_matches_of_120_s_are_replayed_exactly() {
     }
     assert_eq!(std::fs::read_to_string(path).unwrap(), rows);
 }
+
+#[test]
+fn a_season_is_replayed_exactly_and_its_figures_are_within_their_bounds() {
+    if crate::is_long() {
+        println!("{}", monas_tests::check_season(|_| ()).unwrap_or_else(|failure| panic!("{failure}")));
+    } else {
+        println!("skipped: the season is played with MONAS_LONG_TESTS=1, or by `cargo xtask season --check`");
+    }
+}

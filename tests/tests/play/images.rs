@@ -3,6 +3,7 @@
 
 use std::time::Duration;
 
+use monas::config::Layers;
 use monas_match::{MatchOptions, MatchSource};
 use monas_nao::SimulatedNao; // the body registers itself at link time
 use monas_robot::{Disturbances, ObjectKind, Percepts, Robot, Sighting, WrappedBody};
@@ -147,7 +148,12 @@ fn a_robot_that_sees_images_finds_and_moves_the_ball() {
     let blind = Disturbances { loss: 1.0, ..Disturbances::default() };
     let path = monas_tests::root().join("config/match.xml");
     let displaced = |eyes: Eyes| {
-        let plan = MatchSource::load(&path, &monas::Registry::linked()).unwrap();
+        let mut layers = Layers::new();
+        for phase in ["initial", "ready", "set"] {
+            let at_once = format!("simulator.rules.{phase}_duration=0");
+            layers = layers.set(&at_once, &monas_match::grammar()).unwrap();
+        }
+        let plan = MatchSource::load_with(&path, &monas::Registry::linked(), &layers).unwrap();
         // One robot plays; it sees images or nothing, the others nothing.
         let plan = plan.without_agents(2).embody(move |team, number, mut body| {
             if (team, number) == (1, 2) && eyes != Eyes::Blind {
@@ -160,13 +166,17 @@ fn a_robot_that_sees_images_finds_and_moves_the_ball() {
             Box::new(WrappedBody::new(body, blind, 1))
         });
         let mut running = plan.start(MatchOptions { seed: 1, ..MatchOptions::default() }).unwrap();
-        // READY ends when the blind robots have turned once around. After a goal the ball is back
-        // in the centre.
-        let distances = (0..42).map(|second| {
+        // After a goal the ball is back in the centre.
+        let mut farthest = 0.0f64;
+        for second in 0..30 {
             running.advance(Duration::from_secs(second)).unwrap();
-            running.pitch().with_world(|world| world.ball().position.norm())
-        });
-        distances.fold(0.0, f64::max)
+            farthest = farthest.max(running.pitch().with_world(|world| world.ball().position.norm()));
+            if farthest > 0.3 {
+                println!("moved within {second} s");
+                break;
+            }
+        }
+        farthest
     };
     assert!(displaced(Eyes::Field) > 0.3, "the ball is where it was");
     assert!(displaced(Eyes::Nao) > 0.3, "the ball is where it was, with a Nao");
@@ -189,11 +199,12 @@ fn the_matches_with_images_start_and_repeat() {
 
 #[test]
 fn a_robot_plays_with_todays_objects_from_images() {
-    let play = |images| BallKnowledge::of_matches(&TODAY, images, &[1, 2], Duration::from_secs(20)).unwrap();
+    let seeds: &[u64] = if crate::is_long() { &[1, 2] } else { &[1] };
+    let play = |images| BallKnowledge::of_matches(&TODAY, images, seeds, Duration::from_secs(20)).unwrap();
     let (sightings, images) = (play(None), play(Some(320)));
     println!("finished sightings: {sightings:?}\nimages: {images:?}");
     for known in [&sightings, &images] {
-        assert!(known.in_view >= 40, "the ball was in view {} times", known.in_view);
+        assert!(known.in_view >= 20 * seeds.len(), "the ball was in view {} times", known.in_view);
         assert!(known.known_share() > 0.85, "{} of {} balls", known.known, known.in_view);
         assert!(known.wrong * 20 <= known.in_view, "{} wrong of {}", known.wrong, known.in_view);
         assert!(known.error() < 0.1, "distance: {}", known.error());

@@ -232,6 +232,10 @@ fn shoot(run: &mut Run, server: &mut Monitor, second: &mut u64, y: f64, to: f64)
 
 #[test]
 fn a_goalie_stays_between_ball_and_goal_and_saves_slow_shots() {
+    if !crate::is_long() {
+        println!("skipped: the shots are played with MONAS_LONG_TESTS=1");
+        return;
+    }
     if !has_server() {
         return;
     }
