@@ -8,7 +8,7 @@ mod scene;
 mod sensor;
 mod shapes;
 
-use nalgebra::{Point3, Vector3};
+use nalgebra::{Point3, Vector2, Vector3};
 
 use crate::{Camera, Error, Image};
 
@@ -45,18 +45,19 @@ impl Renderer {
         seed: u64,
         pixels: &'a mut Vec<u8>,
     ) -> Result<Image<'a>, Error> {
-        self.draw_ground(scene, camera, light);
+        let shading = Shading::new(light);
+        self.draw_ground(scene, camera, &shading);
         self.solids.clear();
         scene.add_solids(&mut self.solids);
         for index in 0..self.solids.len() {
             let solid = self.solids[index];
-            self.draw_solid(&solid, camera, light);
+            self.draw_solid(&solid, camera, &shading);
         }
         self.sensor.expose(&mut self.colours, camera.width(), light, seed, pixels);
         Image::new(camera.width(), camera.height(), pixels)
     }
 
-    fn draw_ground(&mut self, scene: &Scene, camera: &Camera, light: &Light) {
+    fn draw_ground(&mut self, scene: &Scene, camera: &Camera, shading: &Shading) {
         /// Where in a pixel its samples are, so that thin lines do not break.
         const SAMPLES: [f64; 2] = [0.25, 0.75];
         self.colours.clear();
@@ -67,7 +68,7 @@ impl Renderer {
                 let mut depth = f32::MAX;
                 for part in SAMPLES {
                     let ray = camera.ray(column as f64 + 0.5, row as f64 + part);
-                    let (seen, length) = scene.behind_everything(&camera.position(), &ray, light);
+                    let (seen, length) = scene.behind_everything(&camera.position(), &ray, shading);
                     (0..3).for_each(|i| colour[i] += seen[i] / SAMPLES.len() as f32);
                     depth = depth.min(length as f32);
                 }
@@ -77,7 +78,7 @@ impl Renderer {
         }
     }
 
-    fn draw_solid(&mut self, solid: &Solid, camera: &Camera, light: &Light) {
+    fn draw_solid(&mut self, solid: &Solid, camera: &Camera, shading: &Shading) {
         let Some([left, top, right, bottom]) = extent(solid, camera) else { return };
         let origin = camera.position();
         for row in top..bottom {
@@ -90,7 +91,7 @@ impl Renderer {
                 }
                 self.depths[index] = hit.length as f32;
                 let point = origin + ray * hit.length;
-                self.colours[index] = light.on_surface(hit.colour, &point, &hit.normal);
+                self.colours[index] = shading.on_surface(hit.colour, &point, &hit.normal);
             }
         }
     }
@@ -134,16 +135,27 @@ fn extent(solid: &Solid, camera: &Camera) -> Option<[usize; 4]> {
     (area[0] < area[2] && area[1] < area[3]).then_some(area)
 }
 
-impl Light {
-    /// The colour of a surface in this light, which comes from above and from one side.
+/// How bright surfaces are in a light, which comes from above and from one side.
+struct Shading {
+    /// Towards the brighter side of the field.
+    direction: Vector2<f64>,
+    /// Change of brightness in that direction, 1/m.
+    slope: f64,
+}
+
+impl Shading {
+    fn new(light: &Light) -> Shading {
+        let (sin, cos) = libm::sincos(light.direction);
+        Shading { direction: Vector2::new(cos, sin), slope: light.slope }
+    }
+
     fn on_surface(&self, colour: Rgb, point: &Point3<f64>, normal: &Vector3<f64>) -> Rgb {
         let shade = 0.62 + 0.25 * normal.z + 0.13 * normal.x;
         self.at(colour, point, shade as f32)
     }
 
     fn at(&self, colour: Rgb, point: &Point3<f64>, shade: f32) -> Rgb {
-        let (sin, cos) = libm::sincos(self.direction);
-        let slope = 1.0 + self.slope * (point.x * cos + point.y * sin);
+        let slope = 1.0 + self.slope * (point.x * self.direction.x + point.y * self.direction.y);
         let bright = shade * slope.clamp(0.2, 2.5) as f32;
         [0, 1, 2].map(|i| colour[i] * bright)
     }

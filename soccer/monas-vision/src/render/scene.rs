@@ -2,8 +2,8 @@
 
 use nalgebra::{Point2, Point3, Vector2, Vector3};
 
-use super::Rgb;
 use super::shapes::{Pattern, Solid};
+use super::{Rgb, Shading};
 use crate::{BallPattern, FieldObjects, GoalPaint, Jersey};
 
 /// The measures of a field, m. The frame of the field has its origin in the centre; x points to the
@@ -120,18 +120,22 @@ impl Scene {
         &self,
         origin: &Point3<f64>,
         ray: &Vector3<f64>,
-        light: &Light,
+        shading: &Shading,
     ) -> (Rgb, f64) {
-        let to_wall = wall(origin, ray);
+        /// Points nearer to the centre than this are certainly inside the room, m.
+        const INSIDE: f64 = 0.99 * ROOM;
+        let is_inside = |point: &Point3<f64>| point.x * point.x + point.y * point.y < INSIDE * INSIDE;
         if ray.z < -1e-6 {
             let length = -origin.z / ray.z;
-            if length <= to_wall {
-                let point = origin + ray * length;
-                return (light.at(self.ground(point.xy()), &point, 0.87), length);
+            let point = origin + ray * length;
+            // Of most rays it is clear that they do not meet the wall first.
+            if is_inside(origin) && is_inside(&point) || length <= wall(origin, ray) {
+                return (shading.at(self.ground(point.xy()), &point, 0.87), length);
             }
         }
+        let to_wall = wall(origin, ray);
         let point = origin + ray * to_wall;
-        (light.at(self.room(&point), &point, 0.8), to_wall)
+        (shading.at(self.room(&point), &point, 0.8), to_wall)
     }
 
     /// The colour of the ground at a point.
@@ -156,6 +160,10 @@ impl Scene {
     /// How much light reaches a point beside what stands there.
     fn shadow(&self, point: Point2<f64>) -> f32 {
         let under = |squared: f64, radius: f64| {
+            // Most points are beside all shadows; a root for each would take long.
+            if squared > 1.01 * radius * radius {
+                return 1.0;
+            }
             let away = squared.sqrt() / radius;
             if away < 1.0 { 0.55 + 0.45 * away * away } else { 1.0 }
         };

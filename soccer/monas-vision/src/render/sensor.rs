@@ -23,8 +23,8 @@ impl Sensor {
     ) {
         if light.blur > 0.05 {
             self.make_kernel(light.blur);
-            self.blur(colours, width, 1);
-            self.blur(colours, width, width);
+            self.blur_rows(colours, width);
+            self.blur_columns(colours, width);
         }
         let mut noise = PixelNoise::new(seed, light.noise);
         let gain = (255.0 * light.exposure) as f32;
@@ -55,26 +55,46 @@ impl Sensor {
         self.kernel.iter_mut().for_each(|weight| *weight /= sum);
     }
 
-    /// Blurs along rows (`stride` 1) or columns (`stride` of a row).
-    fn blur(&mut self, colours: &mut Vec<Rgb>, width: usize, stride: usize) {
+    /// Blurs along rows. What is beyond an edge looks like the edge.
+    fn blur_rows(&mut self, colours: &mut Vec<Rgb>, width: usize) {
         let reach = self.kernel.len() / 2;
-        let height = colours.len() / width;
         self.blurred.clear();
-        for row in 0..height {
-            for column in 0..width {
-                let (at, count) = if stride == 1 { (column, width) } else { (row, height) };
-                let base = row * width + column - at * stride;
-                let mut sum = [0.0f32; 3];
-                for (k, weight) in self.kernel.iter().enumerate() {
-                    let near = (at + k).saturating_sub(reach).min(count - 1);
-                    let colour = colours[base + near * stride];
-                    (0..3).for_each(|i| sum[i] += weight * colour[i]);
-                }
-                self.blurred.push(sum);
+        self.blurred.resize(colours.len(), [0.0; 3]);
+        for (row, sums) in colours.chunks_exact(width).zip(self.blurred.chunks_exact_mut(width)) {
+            for (k, &weight) in self.kernel.iter().enumerate() {
+                // The columns whose neighbour is beyond the left or the right edge.
+                let (left, right) = (reach.saturating_sub(k).min(width), k.saturating_sub(reach).min(width));
+                let (before, others) = sums.split_at_mut(left);
+                before.iter_mut().for_each(|sum| add(sum, weight, &row[0]));
+                let (inside, after) = others.split_at_mut((width - left).saturating_sub(right));
+                let near = &row[right..];
+                inside.iter_mut().zip(near).for_each(|(sum, colour)| add(sum, weight, colour));
+                after.iter_mut().for_each(|sum| add(sum, weight, &row[width - 1]));
             }
         }
         std::mem::swap(colours, &mut self.blurred);
     }
+
+    /// Blurs along columns.
+    fn blur_columns(&mut self, colours: &mut Vec<Rgb>, width: usize) {
+        let reach = self.kernel.len() / 2;
+        let last = colours.len().saturating_sub(width);
+        self.blurred.clear();
+        self.blurred.resize(colours.len(), [0.0; 3]);
+        for (at, sums) in self.blurred.chunks_exact_mut(width).enumerate() {
+            for (k, &weight) in self.kernel.iter().enumerate() {
+                let near = ((at + k).saturating_sub(reach) * width).min(last);
+                let row = &colours[near..near + width];
+                sums.iter_mut().zip(row).for_each(|(sum, colour)| add(sum, weight, colour));
+            }
+        }
+        std::mem::swap(colours, &mut self.blurred);
+    }
+}
+
+/// Adds a weighted colour to a sum.
+fn add(sum: &mut Rgb, weight: f32, colour: &Rgb) {
+    (0..3).for_each(|i| sum[i] += weight * colour[i]);
 }
 
 fn yuv([red, green, blue]: [f32; 3]) -> [f32; 3] {
