@@ -113,7 +113,7 @@ fn a_loop_without_a_wait_is_reported_once_in_real_time() {
     let log = folder.path().join("run.log");
     let settings = folder.path().join("logger.toml").display().to_string();
     fs::write(&settings, format!("message_log_file = {:?}\n", log.display().to_string())).expect("a file");
-    let arguments = ["--no-control", "--log", &settings, "--for", "2s"];
+    let arguments = ["--no-control", "--log", &settings, "--for", "3s"];
     let logged: Answer =
         run(folder.path(), &config, &arguments, "").output().expect("the command starts").into();
     assert_eq!(logged.code, Some(0), "{logged:?}");
