@@ -62,33 +62,81 @@ pub struct TeamPlayObserver {
 
 #[derive(Default)]
 struct StateLog {
-    states: BTreeMap<(String, String), StateTime>,
-    /// When a state was entered that has not been left.
-    since: BTreeMap<(String, u32), f64>,
+    hosts: Vec<HostLog>,
     /// When a host began to pass.
     passing: Vec<(String, f64)>,
+}
+
+/// The states of one host. A micro-step finds them by index: a lookup by name took a tenth of a
+/// match.
+struct HostLog {
+    host: String,
+    /// The states that were entered, by name.
+    states: Vec<(String, StateTime)>,
+    /// Index in `states` of each node that was entered, and when, if it has not been left.
+    nodes: Vec<Option<(usize, Option<f64>)>>,
 }
 
 impl StateLog {
     fn note(&mut self, step: &MicroStep<'_>) {
         let now = step.record.time.as_nanos() as f64 * 1e-9;
-        let chart = step.chart.statechart();
-        let nodes = |nodes: &[yase::NodeId]| -> Vec<(u32, String)> {
-            let basic = nodes.iter().filter(|node| chart.node(**node).kind == NodeKind::Basic);
-            basic.map(|node| (node.0, chart.node(*node).name.clone())).collect()
-        };
-        for (node, name) in nodes(step.record.exits) {
-            if let Some(since) = self.since.remove(&(step.host.to_owned(), node)) {
-                self.states.entry((step.host.to_owned(), name)).or_default().seconds += now - since;
-            }
-        }
-        for (node, name) in nodes(step.record.entries) {
+        let statechart = step.chart.statechart();
+        let basic = |node: &&yase::NodeId| statechart.node(**node).kind == NodeKind::Basic;
+        let known = self.hosts.iter().position(|log| log.host == step.host);
+        let index = known.unwrap_or_else(|| {
+            self.hosts.push(HostLog::new(step.host));
+            self.hosts.len() - 1
+        });
+        let log = &mut self.hosts[index];
+        step.record.exits.iter().filter(basic).for_each(|node| log.leave(node.0 as usize, now));
+        for node in step.record.entries.iter().filter(basic) {
+            let name = &statechart.node(*node).name;
             if name == PASSING {
                 self.passing.push((step.host.to_owned(), now));
             }
-            self.since.insert((step.host.to_owned(), node), now);
-            self.states.entry((step.host.to_owned(), name)).or_default().entries += 1;
+            log.enter(node.0 as usize, name, now);
         }
+    }
+
+    fn states(&self) -> BTreeMap<(String, String), StateTime> {
+        let of = |log: &HostLog| -> Vec<_> {
+            log.states.iter().map(|(name, time)| ((log.host.clone(), name.clone()), *time)).collect()
+        };
+        self.hosts.iter().flat_map(of).collect()
+    }
+}
+
+impl HostLog {
+    fn new(host: &str) -> HostLog {
+        HostLog { host: host.to_owned(), states: Vec::new(), nodes: Vec::new() }
+    }
+
+    fn enter(&mut self, node: usize, name: &str, now: f64) {
+        if node >= self.nodes.len() {
+            self.nodes.resize(node + 1, None);
+        }
+        let state = match self.nodes[node] {
+            Some((state, _)) => state,
+            None => self.state(name),
+        };
+        self.states[state].1.entries += 1;
+        self.nodes[node] = Some((state, Some(now)));
+    }
+
+    fn leave(&mut self, node: usize, now: f64) {
+        if let Some(Some((state, since))) = self.nodes.get_mut(node)
+            && let Some(since) = since.take()
+        {
+            self.states[*state].1.seconds += now - since;
+        }
+    }
+
+    /// The index of a state, which several nodes may share.
+    fn state(&mut self, name: &str) -> usize {
+        self.states.iter().position(|(known, _)| known == name).unwrap_or_else(|| {
+            self.states.push((name.to_owned(), StateTime::default()));
+            self.states.len() - 1
+        })
     }
 }
 
@@ -115,7 +163,7 @@ impl TeamPlayObserver {
             count_passes(world, &seen.passing, &mut play);
             play
         });
-        play.states = seen.states.clone();
+        play.states = seen.states();
         play
     }
 }
