@@ -84,6 +84,19 @@ impl Guard {
         reads.timers_distinguished(&self.timers)
     }
 
+    /// The timer that it tests first and that it requires, with the result for a timer that was
+    /// never started: until the timer is over, the guard is false and reads nothing else.
+    pub fn leading_timer(&self) -> Option<(TimerId, bool)> {
+        let first = match &self.test {
+            BooleanTerm::All(tests) => tests.first()?,
+            test => test,
+        };
+        match first {
+            BooleanTerm::Over { timer, when_unset } => Some((*timer, *when_unset)),
+            _ => None,
+        }
+    }
+
     /// Whether it is the word `false`: intentionally never taken.
     pub fn is_literally_false(&self) -> bool {
         self.test == BooleanTerm::Literal(false)

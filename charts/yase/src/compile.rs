@@ -35,7 +35,7 @@ use crate::vocabulary::{TopicId, TypeEnvironment};
 pub(crate) use events::EventFilter;
 pub(crate) use node_order::{NodeIndex, NodeOrder};
 pub use scripts::{ScriptEntry, ScriptLocation};
-pub(crate) use selection_table::{CompletionGate, SelectionEntry};
+pub(crate) use selection_table::{CompletionGate, SelectionEntry, TimerGate};
 
 /// A statechart that a [`Machine`](crate::Machine) can execute; immutable, shared behind an `Arc`.
 ///

@@ -196,7 +196,13 @@ impl ChartCompiler<'_> {
         let activities: Box<[NodeIndex]> =
             self.layout.places().filter(|place| states[place.index()].activity.is_some()).collect();
         Ok(CompiledChart {
-            selection_table: selection_table::entries(&self.layout, &states, &self.branches),
+            selection_table: selection_table::entries(
+                &self.layout,
+                &states,
+                &self.branches,
+                &self.guards,
+                &regions,
+            ),
             node_sets: self.node_sets(&states),
             reads: self.reads(&triggers),
             sources: self.sources(&states, &triggers),

@@ -2,14 +2,14 @@
 //!
 //! Most active nodes have no enabled transition in a micro-step, so the speed of selection depends
 //! on how fast it rejects them. An entry identifies nodes whose transitions need not be examined:
-//! those of which every transition waits for the completion of the node.
+//! those of which every transition waits for the completion of the node, or for a timer.
 
 use crate::bits::BitSet;
 use crate::compile::{
-    BranchRange, CompiledNode, EnablingCondition, NodeIndex, NodeOrder, ScopedGuard, SegmentNode,
+    BranchRange, CompiledNode, EnablingCondition, NodeIndex, NodeOrder, Scope, ScopedGuard, SegmentNode,
 };
 use crate::semantics::CompletionTrigger;
-use crate::statechart::NodeKind;
+use crate::statechart::{NodeKind, TransitionId};
 
 /// The data that selection reads of one node.
 #[derive(Clone, Debug)]
@@ -17,6 +17,9 @@ pub(crate) struct SelectionEntry {
     /// The first node inside it, or the node itself.
     pub(crate) first: NodeIndex,
     pub(crate) gate: CompletionGate,
+    /// If each of its transitions without a trigger has a guard that tests a timer first: those
+    /// timers.
+    pub(crate) timer_gates: Box<[TimerGate]>,
     /// The branches without a trigger, then those with one.
     pub(crate) eventless: BranchRange,
     pub(crate) triggered: BranchRange,
@@ -33,17 +36,34 @@ pub(crate) enum CompletionGate {
     End(NodeIndex),
 }
 
+/// The timer that a guard tests first.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) struct TimerGate {
+    /// The index of the timer in the chart.
+    pub(crate) timer: usize,
+    /// Whether the guard may hold while the timer was never started.
+    pub(crate) when_unset: bool,
+    /// The segment with the guard.
+    pub(crate) transition: TransitionId,
+}
+
 /// One entry for each node, by its index.
 pub(super) fn entries(
     layout: &NodeOrder,
     states: &[CompiledNode],
     branches: &[SegmentNode],
+    guards: &[ScopedGuard],
+    regions: &[Scope],
 ) -> Box<[SelectionEntry]> {
-    let entry = |(index, state): (usize, &CompiledNode)| SelectionEntry {
-        first: layout.first(NodeIndex(index as u32)),
-        gate: gate(state, branches),
-        eventless: state.eventless,
-        triggered: state.triggered,
+    let entry = |(index, state): (usize, &CompiledNode)| {
+        let gate = gate(state, branches);
+        SelectionEntry {
+            first: layout.first(NodeIndex(index as u32)),
+            gate,
+            timer_gates: timer_gates(state, gate, branches, guards, regions).unwrap_or_default(),
+            eventless: state.eventless,
+            triggered: state.triggered,
+        }
     };
     states.iter().enumerate().map(entry).collect()
 }
@@ -58,6 +78,36 @@ pub(super) fn gate(state: &CompiledNode, branches: &[SegmentNode]) -> Completion
         (NodeKind::Or, None, &[end]) => CompletionGate::End(end),
         _ => CompletionGate::Open,
     }
+}
+
+/// The timers that the guards of a node's first segments test first; `None` if one of them has
+/// another guard, a weight, or a condition that is tested before its guard.
+fn timer_gates(
+    state: &CompiledNode,
+    gate: CompletionGate,
+    branches: &[SegmentNode],
+    guards: &[ScopedGuard],
+    regions: &[Scope],
+) -> Option<Box<[TimerGate]>> {
+    let mut gates = Vec::new();
+    for branch in alternatives(state.eventless, branches) {
+        let is_reached = match branch.condition {
+            EnablingCondition::Always => true,
+            EnablingCondition::Completed => gate != CompletionGate::Open,
+            _ => false,
+        };
+        let ScopedGuard { transition, region, guard } = &guards[branch.guard?];
+        if !is_reached || branch.weight.is_some() {
+            return None;
+        }
+        // The literal `false` is tested without a trace.
+        if !guard.is_literally_false() {
+            let (timer, when_unset) = guard.leading_timer()?;
+            let timer = regions[region.index()].timers + timer.0 as usize;
+            gates.push(TimerGate { timer, when_unset, transition: *transition });
+        }
+    }
+    Some(gates.into())
 }
 
 /// The first segments of the paths in a range.

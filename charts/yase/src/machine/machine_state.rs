@@ -410,6 +410,9 @@ impl MachineState {
     /// A timer was set or has expired.
     #[inline]
     pub(crate) fn timer_changed(&mut self, chart: &CompiledChart, timer: usize) {
+        if self.failed_guards.is_empty() {
+            return;
+        }
         let changed = &chart.timers[timer];
         self.failed_guards.retain(|erred| {
             let guard = &chart.guards[erred.guard];

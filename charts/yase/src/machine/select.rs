@@ -2,7 +2,8 @@
 
 use smallvec::SmallVec;
 
-use crate::compile::{CompletionGate, CompoundTransition, EventFilter, NodeIndex, ScopedGuard};
+use crate::compile::{CompletionGate, CompoundTransition, EventFilter, NodeIndex, ScopedGuard, TimerGate};
+use crate::expression::TimerState;
 use crate::host::{Host, Notice};
 use crate::ids::CompoundTransitionId;
 use crate::machine::activities::InvocationPhase;
@@ -72,6 +73,7 @@ impl<H: Host> Macrostep<'_, H> {
         let entry = &chart.selection_table[place.index()];
         if occurrence.is_none() && (!self.passes(entry.gate, place) || self.is_frozen(place))
             || !self.lacks_candidate(entry.first, place)
+            || occurrence.is_none() && self.waits_for_timers(&entry.timer_gates)
         {
             return;
         }
@@ -95,6 +97,26 @@ impl<H: Host> Macrostep<'_, H> {
             }
             CompletionGate::End(end) => self.run.is_active(end) || self.run.vacated.contains(place.index()),
         }
+    }
+
+    /// Whether all guards that would be evaluated test a timer first that is not over. They are
+    /// recorded as if they had been evaluated.
+    #[inline]
+    fn waits_for_timers(&mut self, gates: &[TimerGate]) -> bool {
+        let run = &mut *self.run;
+        let is_closed = |gate: &TimerGate| match run.timers.state(gate.timer, run.now) {
+            TimerState::Unset => !gate.when_unset,
+            TimerState::Running => true,
+            TimerState::Over => false,
+        };
+        // An evaluation without a failure ends the record of an earlier one.
+        if gates.is_empty() || !run.failed_guards.is_empty() || !gates.iter().all(is_closed) {
+            return false;
+        }
+        if run.log.wanted {
+            run.log.guards.extend(gates.iter().map(|gate| (gate.transition, Some(false))));
+        }
+        true
     }
 
     /// Candidates are ordered by their sources, inner ones first, or, for phases, by the leaves for
