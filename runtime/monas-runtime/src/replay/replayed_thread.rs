@@ -139,7 +139,7 @@ impl RepeatedList {
 pub(crate) struct ReplayedChart {
     runner: ChartRunner,
     driver: ReplayDriver,
-    /// The time of the last turn.
+    /// The time of the last turn or change.
     now: Timestamp,
     /// When its next step by itself was due, according to the record of its last turn.
     recorded_due: u64,
@@ -212,6 +212,8 @@ impl ReplayedChart {
     }
 
     fn apply(&mut self, mut update: AgentUpdate, now: Timestamp) -> Result<Vec<String>, Vec<String>> {
+        // What the change makes due was not done before the change.
+        self.now = self.now.max(now);
         let mut notes = Vec::new();
         if let Some((_, swap)) = update.swap {
             notes = self.runner.swap(*swap, now)?;

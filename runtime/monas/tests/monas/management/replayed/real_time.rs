@@ -4,7 +4,7 @@ use std::sync::mpsc::{Sender, channel};
 use std::time::Duration;
 
 use monas::records::{Action, CHANGE, CYCLE, Change, Cycle, Turn};
-use monas::{Agent, Blackboard, BoxError, Hz, Progress, Registry, Talws};
+use monas::{Agent, Blackboard, BoxError, Hz, MicroStep, Progress, Registry, Talws};
 use narukom::prost::Message as _;
 use yase::{Source, Statechart};
 
@@ -400,4 +400,61 @@ fn in_real_time_a_list_without_a_recorded_start_is_rejected() {
     let reasons =
         ["agent `mind` got its first activity ", "the recording lacks the inputs of the turns of `mind`"];
     assert!(reasons.iter().any(|reason| error.starts_with(reason)), "{error}");
+}
+
+/// A chart whose activity `Wait` is called every 6 ms, while `Count` returns after 2 ms.
+fn waiting(calls: Sender<()>) -> Talws {
+    let wait = move || {
+        let (calls, mut times) = (calls.clone(), 0.0);
+        move |blackboard: &mut Blackboard| -> Result<Progress, BoxError> {
+            times += 1.0;
+            blackboard.publish(NEWS, Ball { x: times, y: blackboard.now().as_secs_f64(), found: true })?;
+            // No receiver exists in a replay.
+            let _ = calls.send(());
+            Ok(Progress::after(Duration::from_millis(6)))
+        }
+    };
+    let count = || {
+        let mut times = 0;
+        move |_: &mut Blackboard| {
+            times += 1;
+            if times < 3 { Progress::after(Duration::from_millis(1)) } else { Progress::Done }
+        }
+    };
+    let rest = || |_: &mut Blackboard| Progress::after(Duration::from_secs(1));
+    let registry = Registry::empty().with("Wait", wait).with("Count", count).with("Rest", rest);
+    let agent = Agent::statechart("mind", chart("m = Wait || (Count . Rest)")).every(Hz(1000));
+    Talws::new().registry(registry).agent(agent)
+}
+
+/// The thread of a chart is late: when it applies the change, both the next periodic step and the
+/// next call are overdue, and only the step is no longer due after the change.
+#[test]
+fn in_real_time_a_late_thread_acts_after_the_change_also_in_the_replay() {
+    let (sender, calls) = channel();
+    let (begun, is_begun) = channel();
+    let (_open, nothing) = channel::<()>();
+    let tape = Tape::default();
+    let blocks = move |step: MicroStep<'_>| {
+        let statechart = step.chart.statechart();
+        if step.record.entries.iter().any(|node| statechart.node(*node).name == "Rest") {
+            begun.send(()).unwrap();
+            // The change is requested meanwhile, and applied after this turn.
+            let _ = nothing.recv_timeout(Duration::from_millis(15));
+        }
+    };
+    let mut talws = waiting(sender);
+    talws.listen(Box::new(blocks));
+    talws.observe(Box::new(tape.clone()));
+    let running = talws.start().unwrap();
+    is_begun.recv_timeout(Duration::from_secs(20)).unwrap();
+    let slower = Change { settings: settings(&[("frequency", "50")]), ..change(Action::Set, "mind") };
+    made(&running.run_handle().change("local", slower).unwrap());
+    calls.try_iter().for_each(drop);
+    (0..3).for_each(|_| calls.recv_timeout(Duration::from_secs(20)).unwrap());
+    running.stop();
+    let messages = tape.kept();
+    let outcome = replay(waiting(channel().0), &messages).unwrap();
+    assert_eq!(outcome.differences, []);
+    assert_compared(&messages, &outcome, &[("mind", "test/news", 4), ("mind", "monas/cycle", 3)]);
 }
