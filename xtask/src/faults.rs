@@ -80,6 +80,7 @@ fn run_tests<'t>(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::tidy::workspace::Workspace;
 
     #[test]
     fn every_patch_fits_the_sources() {
@@ -91,6 +92,22 @@ mod tests {
                 patch::apply(&fault.name, &fault.diffs, |file| Ok(std::fs::read_to_string(root.join(file))?));
             let changed = changed.unwrap_or_else(|error| panic!("{error}"));
             assert!(!changed.is_empty(), "{} changes nothing", fault.name);
+        }
+    }
+
+    #[test]
+    fn every_test_that_a_patch_names_exists() {
+        let workspace = Workspace::read(&crate::root()).unwrap();
+        for fault in patch::read(&workspace.root.join(FOLDER)).unwrap() {
+            for FaultTest { program, name } in &fault.tests {
+                let function = format!("fn {}(", name.rsplit("::").next().unwrap());
+                let is_of = |package: &str| program.starts_with(&format!("-p {package} "));
+                let is_there = workspace.files.iter().filter(|file| file.is_rust()).any(|file| {
+                    file.text.contains(&function)
+                        && workspace.crate_of(file).is_some_and(|member| is_of(&member.name))
+                });
+                assert!(is_there, "{} names {program} {name}", fault.name);
+            }
         }
     }
 

@@ -18,7 +18,7 @@ mod source;
 mod texts;
 mod visibility;
 mod words;
-mod workspace;
+pub(crate) mod workspace;
 
 use std::error::Error;
 use std::fmt;
