@@ -6,6 +6,9 @@ use super::bounds::{BoundsConsistency, DifferenceBounds};
 use super::formula::{Atom, GuardLiteral, NegationNormalForm};
 use super::{Example, Satisfiability};
 
+/// Limit of choices with untried alternatives: each keeps what was assumed before it.
+const MOST_BRANCHES: usize = 2_500;
+
 /// The state of a search.
 pub(crate) struct SatisfiabilitySearch {
     /// How many alternatives may still be searched.
@@ -41,6 +44,37 @@ struct Assumptions {
     is_exact: bool,
 }
 
+/// A choice whose alternatives are tried one after the other.
+#[derive(Clone)]
+struct Branch<'f> {
+    /// What was assumed before it.
+    facts: Assumptions,
+    /// The last of the choices that remain beside it.
+    last_choice: Option<usize>,
+    untried: &'f [NegationNormalForm],
+}
+
+/// The choices that are not yet branches. Those of all branches share their common beginning.
+#[derive(Default)]
+struct OpenChoices<'f> {
+    /// Alternatives, and the index of the choice before.
+    all: Vec<(&'f [NegationNormalForm], Option<usize>)>,
+    last: Option<usize>,
+}
+
+impl<'f> OpenChoices<'f> {
+    fn push(&mut self, alternatives: &'f [NegationNormalForm]) {
+        self.all.push((alternatives, self.last));
+        self.last = Some(self.all.len() - 1);
+    }
+
+    fn pop(&mut self) -> Option<&'f [NegationNormalForm]> {
+        let (alternatives, before) = *self.all.get(self.last?)?;
+        self.last = before;
+        Some(alternatives)
+    }
+}
+
 impl SatisfiabilitySearch {
     pub(crate) fn new(alternatives: usize) -> SatisfiabilitySearch {
         SatisfiabilitySearch { left: alternatives, is_open: false, takes_inexact: false }
@@ -73,39 +107,62 @@ impl SatisfiabilitySearch {
             present: BTreeSet::new(),
             is_exact: true,
         };
-        self.solve(facts, vec![formula], Vec::new())
+        self.solve(facts, formula)
     }
 
-    /// Assumes the certain literals first, then branches on the remaining alternatives.
-    fn solve<'f>(
+    /// Searches depth first. The branches are on a stack of their own: the conditions of a run can
+    /// have thousands of choices, more than recursion has room for.
+    fn solve(&mut self, mut facts: Assumptions, mut formula: &NegationNormalForm) -> Option<Assumptions> {
+        let mut choices = OpenChoices::default();
+        let mut branches: Vec<Branch<'_>> = Vec::new();
+        loop {
+            if self.assume_certain(&mut facts, formula, &mut choices) {
+                match choices.pop() {
+                    Some(untried) => branches.push(Branch { facts, last_choice: choices.last, untried }),
+                    None => {
+                        if let Some(found) = self.model_found(facts) {
+                            return Some(found);
+                        }
+                    }
+                }
+            }
+            while branches.pop_if(|branch| branch.untried.is_empty()).is_some() {}
+            let branch = branches.pop()?;
+            if self.left == 0 || branches.len() == MOST_BRANCHES {
+                self.is_open = true;
+                return None;
+            }
+            self.left -= 1;
+            let (alternative, untried) = branch.untried.split_first()?;
+            choices.last = branch.last_choice;
+            if !untried.is_empty() {
+                branches.push(Branch { untried, ..branch.clone() });
+            }
+            (facts, formula) = (branch.facts, alternative);
+        }
+    }
+
+    /// Assumes the literals that are certain and opens the choices. Returns whether the assumptions
+    /// are consistent.
+    fn assume_certain<'f>(
         &mut self,
-        mut facts: Assumptions,
-        mut certain: Vec<&'f NegationNormalForm>,
-        mut choices: Vec<&'f [NegationNormalForm]>,
-    ) -> Option<Assumptions> {
+        facts: &mut Assumptions,
+        formula: &'f NegationNormalForm,
+        choices: &mut OpenChoices<'f>,
+    ) -> bool {
+        let mut certain = vec![formula];
         while let Some(formula) = certain.pop() {
             match formula {
                 NegationNormalForm::All(parts) => certain.extend(parts),
                 NegationNormalForm::Any(parts) => choices.push(parts),
                 NegationNormalForm::Is(literal) => {
-                    if !self.assume(&mut facts, literal) {
-                        return None;
+                    if !self.assume(facts, literal) {
+                        return false;
                     }
                 }
             }
         }
-        let Some(choice) = choices.pop() else { return self.model_found(facts) };
-        for alternative in choice {
-            if self.left == 0 {
-                self.is_open = true;
-                return None;
-            }
-            self.left -= 1;
-            if let Some(found) = self.solve(facts.clone(), vec![alternative], choices.clone()) {
-                return Some(found);
-            }
-        }
-        None
+        true
     }
 
     /// Adds a literal. Returns whether the assumptions are consistent.
@@ -200,5 +257,32 @@ impl Assumptions {
         values.extend(self.bounds.example().into_iter().map(|(name, value)| (name, value.to_string())));
         values.extend(self.missing.into_iter().map(|message| (message, "missing".into())));
         Example { values: values.into_iter().collect() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn choice(number: usize) -> NegationNormalForm {
+        let alternatives = ["a", "b"].map(|name| {
+            NegationNormalForm::Is(GuardLiteral {
+                atom: Atom::Flag(format!("{name}{number}"), true),
+                messages: Vec::new(),
+                is_exact: true,
+            })
+        });
+        NegationNormalForm::Any(alternatives.into())
+    }
+
+    #[test]
+    fn thousands_of_choices_do_not_exhaust_the_stack() {
+        let search = |choices| {
+            let formula = NegationNormalForm::All((0..choices).map(choice).collect());
+            let (found, is_certain) = SatisfiabilitySearch::new(20_000).candidate(&formula);
+            (found.map(|model| model.flags.len()), is_certain)
+        };
+        assert_eq!(search(2_000), (Some(2_000), true));
+        assert_eq!(search(4_000), (None, false), "the limit of branches holds");
     }
 }
