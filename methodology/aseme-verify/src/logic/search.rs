@@ -51,6 +51,8 @@ struct Branch<'f> {
     facts: Assumptions,
     /// The last of the choices that remain beside it.
     last_choice: Option<usize>,
+    /// How many choices were opened before its alternatives.
+    opened: usize,
     untried: &'f [NegationNormalForm],
 }
 
@@ -118,7 +120,10 @@ impl SatisfiabilitySearch {
         loop {
             if self.assume_certain(&mut facts, formula, &mut choices) {
                 match choices.pop() {
-                    Some(untried) => branches.push(Branch { facts, last_choice: choices.last, untried }),
+                    Some(untried) => {
+                        let (last_choice, opened) = (choices.last, choices.all.len());
+                        branches.push(Branch { facts, last_choice, opened, untried });
+                    }
                     None => {
                         if let Some(found) = self.model_found(facts) {
                             return Some(found);
@@ -134,6 +139,7 @@ impl SatisfiabilitySearch {
             }
             self.left -= 1;
             let (alternative, untried) = branch.untried.split_first()?;
+            choices.all.truncate(branch.opened);
             choices.last = branch.last_choice;
             if !untried.is_empty() {
                 branches.push(Branch { untried, ..branch.clone() });
