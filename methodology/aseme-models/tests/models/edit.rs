@@ -1,6 +1,6 @@
 //! Edits of models are edits of their text: what is not concerned keeps its bytes.
 
-use aseme_models::edit::{ModelEdit, ModelOutline, applied, edits, outline};
+use aseme_models::edit::{ModelEdit, ModelOutline, TextEdit, applied, edits, outline};
 use aseme_models::statechart_of;
 use proptest::prelude::*;
 use yase::{NodeKind, Source, Statechart};
@@ -418,7 +418,11 @@ proptest! {
                 let (begin, end) = (start, start + line.len());
                 start = end;
                 let touches = |span: yase::Span| span.start < end && span.end >= begin;
-                if !edits.iter().any(|edit| touches(edit.span) || edit.span.start == end && line.ends_with('\n')) {
+                // What is inserted at the end of a text without a last line break may continue its line.
+                let follows = |edit: &TextEdit| {
+                    edit.span.start == end && (line.ends_with('\n') || !edit.text.starts_with('\n'))
+                };
+                if !edits.iter().any(|edit| touches(edit.span) || follows(edit)) {
                     kept.push(line);
                 }
             }
