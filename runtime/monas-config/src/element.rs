@@ -182,12 +182,16 @@ impl Element {
 /// Whether a name in a file is that key: in snake case, or in the spelling of the thesis
 /// (`IsRealTime` for `is_real_time`).
 pub fn is_written(name: &str, key: &str) -> bool {
-    name == key || name == camel_case(key)
+    name == key || letters_of_camel_case(key).eq(name.chars())
 }
 
 /// A key in the spelling of the thesis.
 pub(crate) fn camel_case(key: &str) -> String {
-    key.split('_').flat_map(capitalised).collect()
+    letters_of_camel_case(key).collect()
+}
+
+fn letters_of_camel_case(key: &str) -> impl Iterator<Item = char> {
+    key.split('_').flat_map(capitalised)
 }
 
 fn capitalised(word: &str) -> impl Iterator<Item = char> {
