@@ -75,7 +75,8 @@ fn no_robot_decides_before_the_game_is_on() {
 
 #[test]
 fn every_state_is_active_and_every_transition_fires_in_a_match() {
-    let (summary, _) = played(&root().join(MATCH.file), 7, 600);
+    let (seed, seconds) = if crate::is_long() { (7, 600) } else { (4, 300) };
+    let (summary, _) = played(&root().join(MATCH.file), seed, seconds);
     let mut models: BTreeMap<String, ChartCoverage> = BTreeMap::new();
     for coverage in &summary.coverage {
         let sum = models.entry(coverage.model.clone()).or_insert_with(|| coverage.clone());

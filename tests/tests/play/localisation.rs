@@ -20,12 +20,13 @@ fn poses_are_near_the_truth_through_kick_offs_and_half_time() {
 #[test]
 fn nine_of_ten_robots_find_themselves_within_ten_seconds_after_they_were_carried_away() {
     let (mut recoveries, mut lost) = (Vec::new(), 0);
-    for seed in 1..=2 {
+    let seeds = if crate::is_long() { 2 } else { 1 };
+    for seed in 1..=seeds {
         let result = kidnap(&MATCH, seed, Duration::from_secs(240)).unwrap();
         recoveries.extend(result.recoveries);
         lost += result.lost;
     }
-    assert!(recoveries.len() >= 25, "{} kidnappings", recoveries.len());
+    assert!(2 * recoveries.len() >= 25 * seeds as usize, "{} kidnappings", recoveries.len());
     // Robots that stay lost count as those that need longest.
     recoveries.extend(vec![30.0; lost]);
     let [half, most] = [0.5, 0.9].map(|part| quantile(&recoveries, part).unwrap());

@@ -99,6 +99,9 @@ fn measures(condition: &'static Condition, vision: Vision) -> Measures {
 
 #[test]
 fn a_table_finds_more_in_its_light() {
+    if !crate::examines_large_images() {
+        return;
+    }
     let known = Vision::starting_from(FieldObjects::OF_2010, table(&LAMPS));
     let (alone, begun) = (measures(&LAMPS, Vision::new(FieldObjects::OF_2010)), measures(&LAMPS, known));
     println!("alone: {alone}\nbegun: {begun}");
@@ -110,6 +113,9 @@ fn a_table_finds_more_in_its_light() {
 
 #[test]
 fn a_table_is_not_worse_when_the_light_changes() {
+    if !crate::examines_large_images() {
+        return;
+    }
     let known = Vision::starting_from(FieldObjects::OF_2010, table(&LAMPS));
     let (alone, begun) =
         (measures(&LAMPS_TO_DAY, Vision::new(FieldObjects::OF_2010)), measures(&LAMPS_TO_DAY, known));

@@ -62,9 +62,9 @@ fn played(file: &str, seed: u64, seconds: u64) -> Vec<Turn> {
 #[test]
 fn two_players_engage_in_the_protocol_and_leave_it_by_each_outcome() {
     let mut left: BTreeMap<String, usize> = BTreeMap::new();
-    let seeds = if crate::is_long() { 1..=2 } else { 1..=1 };
+    let (seeds, seconds) = if crate::is_long() { (1..=2, 600) } else { (3..=3, 150) };
     for seed in seeds {
-        let turns = played("config/match_attack.xml", seed, 600);
+        let turns = played("config/match_attack.xml", seed, seconds);
         for part in PARTS {
             assert!(
                 turns.iter().any(|turn| turn.part == part && turn.left_by.is_none()),
