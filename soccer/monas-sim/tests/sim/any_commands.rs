@@ -46,8 +46,8 @@ fn check(world: &SimulatedWorld, senses: &Senses) -> Result<(), TestCaseError> {
     let state = world.referee().state();
     let beyond = match state {
         GameState::Set | GameState::Playing => 0.5,
-        // A ball that is kicked, or squeezed out between robots, while it is not in play stays where
-        // it stops, until SET.
+        // A ball that is kicked, or squeezed out between robots, while it is not in play stays
+        // where it stops, until SET.
         _ => field.border + longest_roll(),
     };
     prop_assert!(
