@@ -76,8 +76,10 @@ impl HashState {
         pending.extend_from_slice(&sample.header.sequence.to_le_bytes());
         sample.message.encode_to(pending);
         if pending.len() >= BLOCK {
-            self.hasher.update(pending);
-            pending.clear();
+            // Whole blocks: part of a chunk would be hashed alone, and so would the rest of it.
+            let whole = pending.len() / BLOCK * BLOCK;
+            self.hasher.update(&pending[..whole]);
+            pending.drain(..whole);
         }
         self.messages += 1;
     }
