@@ -170,14 +170,18 @@ impl CameraView<'_> {
     fn in_view(&self, target: &VisibleObject) -> bool {
         let physics = self.physics();
         let me = self.me();
+        // First what is sufficient for most targets.
         let aside = normalize_angle(target.bearing - me.head_yaw);
+        if aside.abs() > physics.camera_view_horizontal / 2.0 {
+            return false;
+        }
         let down = |height| self.angle_below_horizon(height, target.distance);
         let (lowest, highest) = (down(target.span.0), down(target.span.1));
         let half = physics.camera_view_vertical / 2.0;
         let shows = |axis: f64| lowest >= axis - half && highest <= axis + half;
         let upper = shows(me.head_pitch);
         let lower = shows(me.head_pitch + physics.camera_tilt);
-        aside.abs() <= physics.camera_view_horizontal / 2.0 && (upper || lower)
+        upper || lower
     }
 
     /// Whether another robot stands between the camera and the target.
