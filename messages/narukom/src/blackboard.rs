@@ -383,7 +383,7 @@ impl Blackboard {
         &self,
         topic: Topic<K>,
         age: Duration,
-    ) -> impl Iterator<Item = Sample<'_, K::Message>> {
+    ) -> impl DoubleEndedIterator<Item = Sample<'_, K::Message>> {
         self.from(HostId::LOCAL).recent(topic, age)
     }
 

@@ -43,7 +43,7 @@ impl<'a> HostView<'a> {
         self,
         topic: Topic<K>,
         age: Duration,
-    ) -> impl Iterator<Item = Sample<'a, K::Message>> + use<'a, K> {
+    ) -> impl DoubleEndedIterator<Item = Sample<'a, K::Message>> + use<'a, K> {
         let oldest = self.blackboard.now - age;
         let recent = self.history_of(topic).filter(move |sample| sample.header.local >= oldest);
         recent.filter_map(AnySample::downcast)
@@ -91,7 +91,10 @@ impl<'a> HostView<'a> {
         self.blackboard.hub.topic_table().by_hash(topic.hash())
     }
 
-    fn history_of<K: Retention>(self, topic: Topic<K>) -> impl Iterator<Item = &'a AnySample> + use<'a, K> {
+    fn history_of<K: Retention>(
+        self,
+        topic: Topic<K>,
+    ) -> impl DoubleEndedIterator<Item = &'a AnySample> + use<'a, K> {
         let history = self.slot_of(topic).and_then(|slot| self.history(slot));
         history.into_iter().flat_map(History::iter)
     }

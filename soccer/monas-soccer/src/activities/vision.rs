@@ -136,8 +136,8 @@ fn sensors_at(blackboard: &Blackboard, moment: u64) -> Option<&monas_robot::Sens
 /// The odometry at a time: from the history of Sensors and the newer sensor readings.
 fn odometry_at(blackboard: &Blackboard, moment: Timestamp) -> Option<Isometry2<f64>> {
     let until = moment.as_nanos();
-    let history = blackboard.recent(topics::SENSORS, Duration::MAX);
-    let last = history.filter(|entry| entry.measured_at <= until).last()?;
+    let mut history = blackboard.recent(topics::SENSORS, Duration::MAX);
+    let last = history.rfind(|entry| entry.measured_at <= until)?;
     let felt = blackboard.recent(body::SENSORS, Duration::MAX);
     let since = felt.filter(|felt| last.measured_at < felt.measured_at && felt.measured_at <= until);
     Some(since.fold(last.odometry(), |odometry, felt| odometry * convert::odometry(felt.message)))
