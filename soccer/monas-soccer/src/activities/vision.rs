@@ -129,8 +129,8 @@ fn see(
 
 /// The sensor readings of a time: the last that were not later.
 fn sensors_at(blackboard: &Blackboard, moment: u64) -> Option<&monas_robot::Sensors> {
-    let felt = blackboard.recent(body::SENSORS, Duration::MAX);
-    felt.filter(|felt| felt.measured_at <= moment).last().map(|felt| felt.message)
+    let mut felt = blackboard.recent(body::SENSORS, Duration::MAX);
+    felt.rfind(|felt| felt.measured_at <= moment).map(|felt| felt.message)
 }
 
 /// The odometry at a time: from the history of Sensors and the newer sensor readings.
