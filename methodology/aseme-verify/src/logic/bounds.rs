@@ -1,5 +1,7 @@
 //! Difference-bound matrices in canonical (tightest) form.
 
+use std::rc::Rc;
+
 /// An upper bound, possibly strict.
 #[derive(Clone, Copy, PartialEq, Debug)]
 struct NumericBound {
@@ -21,6 +23,20 @@ impl NumericBound {
     fn is_tighter(self, other: NumericBound) -> bool {
         self.limit < other.limit || self.limit == other.limit && self.strict && !other.strict
     }
+
+    /// Whether values exist between this bound on a difference and the opposite one.
+    fn is_consistent_with(self, opposite: NumericBound) -> BoundsConsistency {
+        let around = self.plus(opposite);
+        let rounding = ROUNDING * (1.0 + self.limit.abs());
+        if around.limit < 0.0 || around.limit == 0.0 && around.strict {
+            let exact = around.limit == 0.0 || around.limit < -rounding;
+            return if exact { BoundsConsistency::Contradiction } else { BoundsConsistency::TooClose };
+        }
+        if around.limit != 0.0 && around.limit < rounding {
+            return BoundsConsistency::TooClose;
+        }
+        BoundsConsistency::Consistent
+    }
 }
 
 /// Whether bounds are consistent.
@@ -32,32 +48,35 @@ pub(crate) enum BoundsConsistency {
     TooClose,
 }
 
-/// A matrix of difference bounds; the first variable is zero.
-#[derive(Clone, Debug)]
+/// Bounds on the differences of variables, and on variables: their differences from zero.
+///
+/// Variables that no bound relates to each other are in groups of their own, so that a thousand
+/// fields that are each compared with constants do not have a million differences. Clones share
+/// groups until they change.
+#[derive(Clone, Debug, Default)]
 pub(crate) struct DifferenceBounds {
-    names: Vec<String>,
-    /// `at[i][j]` bounds variable i minus variable j.
-    at: Vec<Vec<NumericBound>>,
+    names: Vec<Rc<str>>,
+    /// The group of each name, and its index in the matrix.
+    positions: Vec<Position>,
+    groups: Vec<Rc<BoundMatrix>>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Position {
+    group: usize,
+    index: usize,
 }
 
 impl DifferenceBounds {
-    pub(crate) fn new() -> DifferenceBounds {
-        DifferenceBounds { names: vec![String::new()], at: vec![vec![SAME]] }
-    }
-
-    fn index(&mut self, name: Option<&str>) -> usize {
-        let Some(name) = name else { return 0 };
-        if let Some(index) = self.names.iter().skip(1).position(|it| it == name) {
-            return index + 1;
+    fn position(&mut self, name: &str) -> Position {
+        if let Some(known) = self.names.iter().position(|it| **it == *name) {
+            return self.positions[known];
         }
-        self.names.push(name.to_owned());
-        self.at.iter_mut().for_each(|row| row.push(NONE));
-        let mut row = vec![NONE; self.names.len()];
-        if let Some(own) = row.last_mut() {
-            *own = SAME;
-        }
-        self.at.push(row);
-        self.names.len() - 1
+        let position = Position { group: self.groups.len(), index: 1 };
+        self.names.push(name.into());
+        self.positions.push(position);
+        self.groups.push(Rc::new(BoundMatrix::new(2)));
+        position
     }
 
     /// Adds an upper bound on the difference of two variables.
@@ -68,45 +87,116 @@ impl DifferenceBounds {
         limit: f64,
         strict: bool,
     ) -> BoundsConsistency {
-        let (i, j) = (self.index(more), self.index(less));
         let bound = NumericBound { limit, strict };
-        let around = bound.plus(self.at[j][i]);
-        if around.limit < 0.0 || around.limit == 0.0 && around.strict {
-            let exact = around.limit == 0.0 || around.limit < -ROUNDING * (1.0 + limit.abs());
-            return if exact { BoundsConsistency::Contradiction } else { BoundsConsistency::TooClose };
+        let [more, less] = [more, less].map(|name| name.map(|name| self.position(name)));
+        let (group, i, j) = match (more, less) {
+            (None, None) => return bound.is_consistent_with(SAME),
+            (Some(more), None) => (more.group, more.index, 0),
+            (None, Some(less)) => (less.group, 0, less.index),
+            (Some(more), Some(less)) if more.group == less.group => (more.group, more.index, less.index),
+            (Some(more), Some(less)) => {
+                let offset = self.merge(more.group, less.group);
+                (more.group, more.index, less.index + offset)
+            }
+        };
+        let consistency = bound.is_consistent_with(self.groups[group].at(j, i));
+        if consistency == BoundsConsistency::Consistent && bound.is_tighter(self.groups[group].at(i, j)) {
+            Rc::make_mut(&mut self.groups[group]).tighten(i, j, bound);
         }
-        if around.limit != 0.0 && around.limit < ROUNDING * (1.0 + limit.abs()) {
-            return BoundsConsistency::TooClose;
+        consistency
+    }
+
+    /// Moves the variables of a group to another one. Returns what is added to their indices.
+    fn merge(&mut self, group: usize, moved: usize) -> usize {
+        let from = std::mem::replace(&mut self.groups[moved], Rc::new(BoundMatrix::new(1)));
+        let offset = self.groups[group].size - 1;
+        self.groups[group] = Rc::new(self.groups[group].beside(&from));
+        for position in self.positions.iter_mut().filter(|position| position.group == moved) {
+            *position = Position { group, index: position.index + offset };
         }
-        if bound.is_tighter(self.at[i][j]) {
-            self.tighten(i, j, bound);
+        offset
+    }
+
+    /// Values within the bounds.
+    pub(crate) fn example(mut self) -> Vec<(String, f64)> {
+        let mut values = Vec::new();
+        for (name, position) in self.names.iter().zip(&self.positions) {
+            let matrix = Rc::make_mut(&mut self.groups[position.group]);
+            let index = position.index;
+            let (upper, lower) = (matrix.at(index, 0), matrix.at(0, index));
+            let value = between((-lower.limit, lower.strict), (upper.limit, upper.strict));
+            matrix.fix(index, value);
+            values.push((name.to_string(), value));
         }
-        BoundsConsistency::Consistent
+        values
+    }
+}
+
+/// A matrix of difference bounds in canonical form; the first variable is zero.
+#[derive(Clone, Debug)]
+struct BoundMatrix {
+    size: usize,
+    /// The bound of variable i minus variable j is at i times the size, plus j.
+    bounds: Vec<NumericBound>,
+}
+
+impl BoundMatrix {
+    /// A matrix of variables without bounds.
+    fn new(size: usize) -> BoundMatrix {
+        let bound = |index: usize| if index.is_multiple_of(size + 1) { SAME } else { NONE };
+        BoundMatrix { size, bounds: (0..size * size).map(bound).collect() }
+    }
+
+    fn at(&self, i: usize, j: usize) -> NumericBound {
+        self.bounds[i * self.size + j]
+    }
+
+    /// The variables of both, which are related by zero only: those of the other one follow.
+    fn beside(&self, other: &BoundMatrix) -> BoundMatrix {
+        let size = self.size + other.size - 1;
+        let bound = |i: usize, j: usize| {
+            let own = |index: usize| index < self.size;
+            let others = |index: usize| if index == 0 { 0 } else { index + 1 - self.size };
+            match (own(i), own(j)) {
+                (true, true) => self.at(i, j),
+                (true, false) => self.at(i, 0).plus(other.at(0, others(j))),
+                (false, true) => other.at(others(i), 0).plus(self.at(0, j)),
+                (false, false) => other.at(others(i), others(j)),
+            }
+        };
+        let bounds = (0..size * size).map(|index| bound(index / size, index % size)).collect();
+        BoundMatrix { size, bounds }
     }
 
     fn tighten(&mut self, i: usize, j: usize, bound: NumericBound) {
-        for from in 0..self.at.len() {
-            for to in 0..self.at.len() {
-                let way = self.at[from][i].plus(bound).plus(self.at[j][to]);
-                if way.is_tighter(self.at[from][to]) {
-                    self.at[from][to] = way;
+        let onwards: Vec<(usize, NumericBound)> = (0..self.size)
+            .map(|to| (to, self.at(j, to)))
+            .filter(|(_, bound)| bound.limit.is_finite())
+            .collect();
+        for from in 0..self.size {
+            let before = self.at(from, i).plus(bound);
+            if before.limit.is_infinite() {
+                continue;
+            }
+            let row = &mut self.bounds[from * self.size..][..self.size];
+            for (to, after) in &onwards {
+                let way = before.plus(*after);
+                if way.is_tighter(row[*to]) {
+                    row[*to] = way;
                 }
             }
         }
     }
 
-    /// Values within the bounds, ordered by name.
-    pub(crate) fn example(mut self) -> Vec<(String, f64)> {
-        let mut values = Vec::new();
-        for index in 1..self.names.len() {
-            let (upper, lower) = (self.at[index][0], self.at[0][index]);
-            let value = between((-lower.limit, lower.strict), (upper.limit, upper.strict));
-            let name = self.names[index].clone();
-            self.add(Some(&name), None, value, false);
-            self.add(None, Some(&name), -value, false);
-            values.push((name, value));
+    /// Gives a variable a value within its bounds.
+    fn fix(&mut self, index: usize, value: f64) {
+        for (i, j, limit) in [(index, 0, value), (0, index, -value)] {
+            let bound = NumericBound { limit, strict: false };
+            let is_consistent = bound.is_consistent_with(self.at(j, i)) == BoundsConsistency::Consistent;
+            if is_consistent && bound.is_tighter(self.at(i, j)) {
+                self.tighten(i, j, bound);
+            }
         }
-        values
     }
 }
 
@@ -133,7 +223,7 @@ mod tests {
 
     #[test]
     fn bounds_follow_from_each_other() {
-        let mut bounds = DifferenceBounds::new();
+        let mut bounds = DifferenceBounds::default();
         assert_eq!(bounds.add(Some("x"), Some("y"), -1.0, false), BoundsConsistency::Consistent);
         assert_eq!(bounds.add(Some("y"), Some("z"), -1.0, true), BoundsConsistency::Consistent);
         assert_eq!(bounds.clone().add(Some("z"), Some("x"), 2.0, false), BoundsConsistency::Contradiction);
@@ -148,8 +238,30 @@ mod tests {
     }
 
     #[test]
+    fn variables_that_only_constants_bound_stay_apart_until_a_bound_relates_them() {
+        let mut bounds = DifferenceBounds::default();
+        let name = |number: usize| format!("x{number}");
+        for number in 0..2_000 {
+            bounds.add(Some(&name(number)), None, number as f64 + 1.0, true);
+            bounds.add(None, Some(&name(number)), -(number as f64), false);
+        }
+        let sizes = |bounds: &DifferenceBounds| bounds.groups.iter().map(|group| group.size).max();
+        assert_eq!(sizes(&bounds), Some(2));
+        // x7 is below 8, x9 at least 9.
+        let (less, more) = (name(7), name(9));
+        let mut impossible = bounds.clone();
+        assert_eq!(impossible.add(Some(&more), Some(&less), 1.0, false), BoundsConsistency::Contradiction);
+        assert_eq!(bounds.add(Some(&more), Some(&less), 1.5, false), BoundsConsistency::Consistent);
+        assert_eq!(sizes(&bounds), Some(3));
+        let values = bounds.example();
+        let value = |name: &str| values.iter().find(|(it, _)| it == name).unwrap().1;
+        assert!(value("x9") >= 9.0 && value("x9") - value("x7") <= 1.5 && value("x7") < 8.0);
+        assert_eq!((values.len(), value("x1999")), (2_000, 1999.0));
+    }
+
+    #[test]
     fn results_that_depend_on_rounding_are_undecided() {
-        let mut bounds = DifferenceBounds::new();
+        let mut bounds = DifferenceBounds::default();
         bounds.add(Some("x"), Some("y"), 0.1, false);
         bounds.add(Some("y"), Some("z"), 0.2, false);
         assert_eq!(bounds.add(Some("z"), Some("x"), -0.3, false), BoundsConsistency::TooClose);

@@ -104,7 +104,7 @@ impl SatisfiabilitySearch {
             flags: BTreeMap::new(),
             equals: BTreeMap::new(),
             differs: BTreeSet::new(),
-            bounds: DifferenceBounds::new(),
+            bounds: DifferenceBounds::default(),
             missing: BTreeSet::new(),
             present: BTreeSet::new(),
             is_exact: true,
