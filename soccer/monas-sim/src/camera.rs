@@ -170,7 +170,7 @@ impl CameraView<'_> {
     fn in_view(&self, target: &VisibleObject) -> bool {
         let physics = self.physics();
         let me = self.me();
-        // First what is sufficient for most targets.
+        // Most targets are beside the picture: these need no elevation.
         let aside = normalize_angle(target.bearing - me.head_yaw);
         if aside.abs() > physics.camera_view_horizontal / 2.0 {
             return false;
