@@ -171,11 +171,11 @@ impl BoundMatrix {
     fn tighten(&mut self, i: usize, j: usize, bound: NumericBound) {
         let onwards: Vec<(usize, NumericBound)> = (0..self.size)
             .map(|to| (to, self.at(j, to)))
-            .filter(|(_, bound)| bound.limit.is_finite())
+            .filter(|(_, bound)| bound.limit < f64::INFINITY)
             .collect();
         for from in 0..self.size {
             let before = self.at(from, i).plus(bound);
-            if before.limit.is_infinite() {
+            if before.limit == f64::INFINITY {
                 continue;
             }
             let row = &mut self.bounds[from * self.size..][..self.size];
@@ -257,6 +257,13 @@ mod tests {
         let value = |name: &str| values.iter().find(|(it, _)| it == name).unwrap().1;
         assert!(value("x9") >= 9.0 && value("x9") - value("x7") <= 1.5 && value("x7") < 8.0);
         assert_eq!((values.len(), value("x1999")), (2_000, 1999.0));
+    }
+
+    #[test]
+    fn a_variable_below_all_numbers_has_no_lower_bound() {
+        let mut bounds = DifferenceBounds::default();
+        assert_eq!(bounds.add(Some("x"), None, f64::NEG_INFINITY, false), BoundsConsistency::Consistent);
+        assert_eq!(bounds.add(None, Some("x"), 5.0, false), BoundsConsistency::Contradiction);
     }
 
     #[test]
