@@ -69,16 +69,21 @@ fn a_k1_walks_ahead_and_turns_as_commanded_and_the_odometry_follows() {
     walks(&K1);
 }
 
-#[test]
-fn a_t1_is_a_body_like_any_other() {
-    let Some(mut robot) = start(&T1) else { return };
-    conformance::check(&mut robot);
+/// Does the same with every robot, each on a server of its own at the same time.
+fn with_each(test: fn(&Humanoid)) {
+    std::thread::scope(|scope| {
+        for robot in Humanoid::ALL {
+            scope.spawn(move || test(robot));
+        }
+    });
 }
 
 #[test]
-fn a_k1_is_a_body_like_any_other() {
-    let Some(mut robot) = start(&K1) else { return };
-    conformance::check(&mut robot);
+fn robots_are_bodies_like_any_other() {
+    with_each(|robot| {
+        let Some(mut robot) = start(robot) else { return };
+        conformance::check(&mut robot);
+    });
 }
 
 #[test]
@@ -111,19 +116,11 @@ fn felt(robot: &Humanoid) -> Option<Vec<[u64; 4]>> {
     Some(felt)
 }
 
-/// Two runs are equal bit for bit.
-fn repeats(robot: &Humanoid) {
-    let (Some(one), Some(other)) = (felt(robot), felt(robot)) else { return };
-    let first = one.iter().zip(&other).position(|(one, other)| one != other);
-    assert_eq!(first, None, "the first cycle that differs");
-}
-
 #[test]
-fn two_runs_of_a_t1_are_equal_bit_for_bit() {
-    repeats(&T1);
-}
-
-#[test]
-fn two_runs_of_a_k1_are_equal_bit_for_bit() {
-    repeats(&K1);
+fn two_runs_are_equal_bit_for_bit() {
+    with_each(|robot| {
+        let (Some(one), Some(other)) = (felt(robot), felt(robot)) else { return };
+        let first = one.iter().zip(&other).position(|(one, other)| one != other);
+        assert_eq!(first, None, "{}: the first cycle that differs", robot.name());
+    });
 }
