@@ -1,13 +1,29 @@
-//! Robots on the soccer server, if the program `rcssservermj` is there.
+//! Robots on the soccer server, if the program `rcssservermj` is there. The short form tests one robot
+//! where the long form (`MONAS_LONG_TESTS=1`) tests all.
 #![allow(clippy::unwrap_used)] // tests
 
 use std::collections::BTreeMap;
 use std::process::Stdio;
 
 use monas_rcsssmj::monitor::Command;
-use monas_rcsssmj::{Booster, Humanoid, K1, T1};
+use monas_rcsssmj::{Booster, Humanoid, K1};
 use monas_robot::{Actuators, BodySite, Percepts, Posture, Robot, conformance};
 use narukom::Timestamp;
+
+fn is_long() -> bool {
+    std::env::var_os("MONAS_LONG_TESTS").is_some()
+}
+
+/// Does the same with every robot, each on a server of its own at the same time; in the short form
+/// with the first.
+fn with_each(test: fn(&Humanoid)) {
+    let count = if is_long() { Humanoid::ALL.len() } else { 1 };
+    std::thread::scope(|scope| {
+        for robot in &Humanoid::ALL[..count] {
+            scope.spawn(move || test(robot));
+        }
+    });
+}
 
 /// A robot with its own walk; none, loudly, without the server.
 fn start(robot: &Humanoid) -> Option<Booster> {
@@ -41,8 +57,7 @@ fn run(robot: &mut Booster, cycle: &mut u64, seconds: f64, command: &Actuators) 
     way
 }
 
-/// Its own walk goes ahead and turns as commanded, and the odometry follows.
-fn walks(robot: &Humanoid) {
+fn walks_as_commanded(robot: &Humanoid) {
     let Some(mut robot) = start(robot) else { return };
     let mut cycle = 0;
     let ([x, y, _], heading) = (robot.true_position(), robot.true_heading());
@@ -60,22 +75,8 @@ fn walks(robot: &Humanoid) {
 }
 
 #[test]
-fn a_t1_walks_ahead_and_turns_as_commanded_and_the_odometry_follows() {
-    walks(&T1);
-}
-
-#[test]
-fn a_k1_walks_ahead_and_turns_as_commanded_and_the_odometry_follows() {
-    walks(&K1);
-}
-
-/// Does the same with every robot, each on a server of its own at the same time.
-fn with_each(test: fn(&Humanoid)) {
-    std::thread::scope(|scope| {
-        for robot in Humanoid::ALL {
-            scope.spawn(move || test(robot));
-        }
-    });
+fn robots_walk_ahead_and_turn_as_commanded_and_the_odometry_follows() {
+    with_each(walks_as_commanded);
 }
 
 #[test]
@@ -98,14 +99,15 @@ fn the_server_goes_on_when_a_k1_touches_the_ball() {
 fn felt(robot: &Humanoid) -> Option<Vec<[u64; 4]>> {
     let mut robot = start(robot)?;
     let (mut percepts, mut felt) = (Percepts::default(), Vec::new());
-    for cycle in 1..=700 {
+    let (cycles, placed) = if is_long() { (700, 300) } else { (350, 150) };
+    for cycle in 1..=cycles {
         let now = Timestamp::from_nanos(cycle * 20_000_000);
         percepts.clear_news();
         robot.sense(now, &mut percepts).unwrap();
         let [x, y, _] = robot.true_position();
         let sensors = &percepts.sensors;
         felt.push([x, y, sensors.odometry_x, sensors.torso_pitch].map(f64::to_bits));
-        if cycle == 300 {
+        if cycle == placed {
             // It drops from a height, in front of a rolling ball.
             let team = "Monas".to_owned();
             robot.instruct(Command::PlaceRobot { team, number: 2, at: [-3.0, 1.0, 0.9], heading: 1.0 });
