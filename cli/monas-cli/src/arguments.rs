@@ -2,6 +2,7 @@
 
 use clap::{Parser, Subcommand};
 use clap_complete::Shell;
+use monas_terminal::GlobalArguments;
 
 #[cfg(unix)]
 use crate::commands::agent::AgentCommand;
@@ -32,7 +33,6 @@ use crate::commands::topic::TopicArguments;
 #[cfg(feature = "soccer")]
 use crate::commands::vision::VisionArguments;
 use crate::commands::why::WhyArguments;
-use crate::terminal::GlobalArguments;
 
 /// From a formula to a running robot team.
 #[derive(Parser, Debug)]
@@ -208,7 +208,7 @@ mod tests {
 
     use super::*;
     use crate::input::DEFAULT_CONFIGURATION;
-    use crate::terminal::Format;
+    use monas_terminal::Format;
 
     #[test]
     fn definitions_hold_together() {

@@ -6,10 +6,10 @@ use std::{fs, io};
 
 use clap::{CommandFactory, Parser};
 use clap_complete::env::Shells;
+use monas_terminal::{CommandFailure, CommandOutput, Exit, Format, UnreadOutput, wanted_colours};
 
 use crate::arguments::{Arguments, Command};
 use crate::commands;
-use crate::terminal::{CommandFailure, CommandOutput, Exit, Format, UnreadOutput, wanted_colours};
 
 /// Parses the arguments, of which the first is the program's name, and executes the command.
 pub(crate) fn dispatch<Argument: Into<OsString> + Clone>(

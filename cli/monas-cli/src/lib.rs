@@ -3,12 +3,12 @@
 //! A team's program links the crates with the team's activities and calls [`main`]. The command
 //! `monas` of this crate is such a program, with the activities of `monas-soccer`. The crate
 //! contains no robotics: it parses the command line, calls the libraries, and prints their results.
-//! It is the only crate that renders a [`yase::Diagnostic`], draws progress bars, handles Ctrl-C,
-//! or installs global state of the process (logger, panic hook).
+//! It is the only crate that installs global state of the process (logger, panic hook, crash
+//! report).
 //!
 //! Each command has a module with its arguments and its work. Commands share code only through
-//! three modules: `terminal` for output, `remote` for runs in other processes, and `input` for
-//! configurations, models and recordings.
+//! the crate `monas-terminal` for output and two modules: `remote` for runs in other processes,
+//! and `input` for configurations, models and recordings.
 //!
 //! [`run`] executes a command line and writes to the given streams, so that tests see what a user
 //! would see. It returns an [`Exit`], which maps to one exit code:
@@ -31,22 +31,22 @@
 
 mod arguments;
 mod commands;
+mod crash_report;
 mod delegate;
 mod dispatch;
 mod input;
 mod process;
 #[cfg(unix)]
 mod remote;
-mod terminal;
 
 use std::ffi::OsString;
 use std::io::Write;
 use std::process::ExitCode;
 
-use terminal::CommandOutput;
+use monas_terminal::CommandOutput;
 
 pub use monas::memory::CountingAllocator;
-pub use terminal::Exit;
+pub use monas_terminal::Exit;
 
 /// Executes the command with the arguments, streams and signals of this process.
 pub fn main() -> ExitCode {

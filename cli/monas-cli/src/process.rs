@@ -6,13 +6,14 @@ use std::panic;
 use clap::CommandFactory;
 use clap_complete::CompleteEnv;
 use indicatif::MultiProgress;
+use monas_terminal::{CommandOutput, Exit, ProcessLog, UnreadOutput};
 
 use crate::arguments::Arguments;
+use crate::crash_report;
+#[cfg(target_os = "linux")]
+use crate::crash_report::CrashReport;
 use crate::delegate;
 use crate::dispatch::dispatch;
-#[cfg(target_os = "linux")]
-use crate::terminal::crash_report::CrashReport;
-use crate::terminal::{CommandOutput, Exit, ProcessLog, UnreadOutput, crash_report};
 
 /// Executes the command as this process.
 pub(crate) fn main() -> Exit {

@@ -1,5 +1,5 @@
-//! Robots on the soccer server, if the program `rcssservermj` is there. The short form tests one robot
-//! where the long form (`MONAS_LONG_TESTS=1`) tests all.
+//! Robots on the soccer server, if the program `rcssservermj` is there. The short form tests one
+//! robot where the long form (`MONAS_LONG_TESTS=1`) tests all.
 #![allow(clippy::unwrap_used)] // tests
 
 use std::collections::BTreeMap;

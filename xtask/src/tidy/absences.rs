@@ -23,7 +23,7 @@ struct Absence {
     because: &'static str,
 }
 
-const ABSENCES: [Absence; 28] = [
+const ABSENCES: [Absence; 29] = [
     Absence {
         crate_name: "narukom",
         names: &[&OUTSIDE, &CHANCE, &PRINTING, &["Agent", "Activity", "Statechart"]],
@@ -189,6 +189,12 @@ const ABSENCES: [Absence; 28] = [
         names: &[&["std::net", "monas_match"], &PRINTING],
         except: &[],
         because: "it reaches a robot through ssh only, and the command line prints its results",
+    },
+    Absence {
+        crate_name: "monas-terminal",
+        names: &[&["std::net", "std::process::Command", "monas_match"], &PRINTING],
+        except: &[],
+        because: "it knows none of the commands, and writes to the writers it is given",
     },
     Absence {
         crate_name: "monas-cli",

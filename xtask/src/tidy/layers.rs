@@ -6,7 +6,7 @@ use super::TidyFinding;
 use super::workspace::{Crate, Dependency, Workspace};
 
 /// Every crate of the product and its layer.
-const LAYERS: [(&str, u8); 37] = [
+const LAYERS: [(&str, u8); 38] = [
     ("monas-diagnostics", 0),
     ("monas-files", 0),
     ("narukom", 0),
@@ -43,6 +43,7 @@ const LAYERS: [(&str, u8); 37] = [
     ("monas-project", 15),
     ("monas-deploy", 16),
     ("monas-scene", 16),
+    ("monas-terminal", 16),
     ("monas-cli", 17),
 ];
 

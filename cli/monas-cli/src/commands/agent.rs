@@ -5,7 +5,7 @@ mod change;
 mod list;
 mod save;
 
-use crate::terminal::{CommandFailure, CommandOutput, Exit};
+use monas_terminal::{CommandFailure, CommandOutput, Exit};
 
 pub(crate) use arguments::AgentCommand;
 

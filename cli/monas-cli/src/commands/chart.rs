@@ -7,9 +7,9 @@ use std::path::PathBuf;
 use clap::{Subcommand, ValueHint};
 use clap_complete::engine::ArgValueCandidates;
 use monas::records::{Action, Change};
+use monas_terminal::{CommandFailure, CommandOutput, Exit};
 
 use crate::remote::{RunSelector, agents, print_outcome, request_change};
-use crate::terminal::{CommandFailure, CommandOutput, Exit};
 
 #[derive(Subcommand, Debug)]
 pub(crate) enum ChartCommand {

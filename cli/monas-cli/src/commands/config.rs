@@ -6,9 +6,9 @@ mod show;
 use std::path::PathBuf;
 
 use clap::{Args, Subcommand, ValueHint};
+use monas_terminal::{CommandFailure, CommandOutput, Exit, FormatArgument};
 
 use crate::input::{DEFAULT_CONFIGURATION, LayerArguments, grammar};
-use crate::terminal::{CommandFailure, CommandOutput, Exit, FormatArgument};
 
 /// A configuration with its layers.
 #[derive(Args, Debug)]

@@ -4,10 +4,10 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueHint};
 use monas_deploy::{Deployment, ErrorKind, Release, Robot, build_program, find_robot, missing_modules};
+use monas_terminal::{CommandFailure, CommandOutput, Exit, Format, FormatArgument, failed};
 use serde_json::json;
 
 use crate::input::{checked, grammar};
-use crate::terminal::{CommandFailure, CommandOutput, Exit, Format, FormatArgument, failed};
 
 /// Arguments of `monas deploy`.
 #[derive(Args, Debug)]

@@ -11,11 +11,11 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueHint};
 use monas::config::Layers;
+use monas_terminal::{CommandFailure, CommandOutput, Exit, Format, FormatArgument, report};
 use serde_json::json;
 use yase::Diagnostic;
 
 use crate::input::{ConfigurationKind, DEFAULT_CONFIGURATION, kind_of, load_agents};
-use crate::terminal::{CommandFailure, CommandOutput, Exit, Format, FormatArgument, report};
 
 /// Arguments of `monas doctor`.
 #[derive(Args, Debug)]

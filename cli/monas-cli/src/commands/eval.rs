@@ -6,8 +6,7 @@ use std::time::Duration;
 use clap::{Args, ValueHint};
 use monas::Registry;
 use monas_eval::EvaluationSettings;
-
-use crate::terminal::{CommandFailure, CommandOutput, Exit, Format, duration};
+use monas_terminal::{CommandFailure, CommandOutput, Exit, Format, duration};
 
 /// Arguments of `monas eval`.
 #[derive(Args, Debug)]

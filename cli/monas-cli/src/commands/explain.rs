@@ -5,8 +5,7 @@ use std::io;
 use clap::Args;
 use clap_complete::engine::{ArgValueCompleter, CompletionCandidate};
 use monas_diagnostics::{Explanation, FAMILIES, explanations};
-
-use crate::terminal::{CommandFailure, CommandOutput, Exit};
+use monas_terminal::{CommandFailure, CommandOutput, Exit};
 
 /// The columns of an explanation.
 const WIDTH: usize = 80;

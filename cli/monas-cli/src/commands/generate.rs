@@ -5,10 +5,11 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueHint};
 use monas_project::{Project, generate_crate};
+use monas_terminal::{CommandFailure, CommandOutput, Exit, Format, FormatArgument};
 use serde_json::json;
 
+use super::new::project_failure;
 use crate::input::valid_chart;
-use crate::terminal::{CommandFailure, CommandOutput, Exit, Format, FormatArgument, project_failure};
 
 /// Arguments of `monas generate`.
 #[derive(Args, Debug)]

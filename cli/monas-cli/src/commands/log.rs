@@ -14,8 +14,8 @@ use prost::Message;
 
 #[cfg(unix)]
 use crate::remote::{RunSelector, WatchLimits, hosts, watch};
-use crate::terminal::{CommandFailure, CommandOutput, Exit, Format, FormatArgument, duration, failed};
 use line::LogLine;
+use monas_terminal::{CommandFailure, CommandOutput, Exit, Format, FormatArgument, duration, failed};
 
 /// The topic of log lines.
 const TOPIC: &str = "monas/log";

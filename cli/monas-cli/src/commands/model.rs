@@ -20,6 +20,7 @@ mod scenario;
 mod transform;
 
 use clap::Subcommand;
+use monas_terminal::{CommandFailure, CommandOutput, Exit};
 
 use self::check::CheckArguments;
 use self::compose::ComposeArguments;
@@ -33,7 +34,6 @@ use self::ontology::OntologyArguments;
 use self::regenerate::RegenerateArguments;
 use self::run::PlayArguments;
 use self::transform::TransformArguments;
-use crate::terminal::{CommandFailure, CommandOutput, Exit};
 
 #[derive(Subcommand, Debug)]
 pub(crate) enum ModelCommand {

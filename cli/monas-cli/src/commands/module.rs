@@ -6,7 +6,7 @@ mod change;
 mod list;
 mod show;
 
-use crate::terminal::{CommandFailure, CommandOutput, Exit};
+use monas_terminal::{CommandFailure, CommandOutput, Exit};
 
 pub(crate) use arguments::ModuleCommand;
 

@@ -5,9 +5,8 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use monas_project::{NewActivity, NewModule, create_activity, create_module, create_project};
+use monas_terminal::{CommandFailure, CommandOutput, Exit, Format, FormatArgument};
 use serde_json::json;
-
-use crate::terminal::{CommandFailure, CommandOutput, Exit, Format, FormatArgument, project_failure};
 
 /// Arguments of `monas new`.
 #[derive(Args, Debug)]
@@ -24,6 +23,15 @@ pub(crate) struct NewArguments {
     pub(crate) monas: Option<String>,
     #[command(flatten)]
     pub(crate) format: FormatArgument,
+}
+
+/// Maps an error of a project to a failure, for `map_err`.
+pub(super) fn project_failure(format: Format) -> impl Fn(monas_project::Error) -> CommandFailure {
+    move |error| match error.kind() {
+        monas_project::ErrorKind::Argument => CommandFailure::Usage(error.to_string()),
+        monas_project::ErrorKind::Invalid => CommandFailure::Invalid(format, error.diagnostics().to_vec()),
+        _ => CommandFailure::failed(format, error),
+    }
 }
 
 pub(crate) fn execute(

@@ -11,9 +11,9 @@ use monas_gamecontroller::{
     Connection, ControlSender, Endpoint, GameControlData, OperatedGame, OperatorCommand, RETURN_PORT,
     Received, WhistleDelay,
 };
+use monas_terminal::{CommandFailure, CommandOutput, Exit, Format, Interrupt, WallClock, duration};
 
 use super::run::league::RuleBookArgument;
-use crate::terminal::{CommandFailure, CommandOutput, Exit, Format, Interrupt, WallClock, duration};
 
 /// Interval at which input, clocks and reports are looked at.
 const LOOK: Duration = Duration::from_millis(20);

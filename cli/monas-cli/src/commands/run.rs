@@ -28,10 +28,10 @@ use std::time::Duration;
 
 use clap::{Args, ValueHint};
 use monas_project::differences;
+use monas_terminal::{CommandFailure, CommandOutput, Exit, FormatArgument, duration, parse_size, report};
 use yase::Diagnostic;
 
 use crate::input::{ConfigurationKind, DEFAULT_CONFIGURATION, LayerArguments, kind_of, layers};
-use crate::terminal::{CommandFailure, CommandOutput, Exit, FormatArgument, duration, parse_size, report};
 
 /// Arguments of `monas run`.
 #[derive(Args, Debug)]

@@ -11,13 +11,13 @@ use monas_studio::{
     AsemeLanguage, ListenAddress, ModelWorkspace, Pace, Scene, SceneEvent, Studio, StudioSettings, TapeRun,
 };
 use monas_tape::Recording;
+use monas_terminal::{
+    CommandFailure, CommandOutput, Exit, Format, FormatArgument, Interrupt, WallClock, failed, report,
+};
 
 use super::model::program;
 use crate::input::recorded_charts;
 use crate::remote::{RunSelector, connection, runs};
-use crate::terminal::{
-    CommandFailure, CommandOutput, Exit, Format, FormatArgument, Interrupt, WallClock, failed, report,
-};
 
 #[derive(Args, Debug)]
 pub(crate) struct StudioArguments {

@@ -12,9 +12,10 @@ mod value_text;
 #[cfg(all(feature = "soccer", unix))]
 mod what_if;
 
+use monas_terminal::{CommandFailure, CommandOutput, Exit};
+
 #[cfg(unix)]
 use crate::commands::studio::ListenArgument;
-use crate::terminal::{CommandFailure, CommandOutput, Exit};
 use arguments::ReplayArguments;
 
 pub(crate) use arguments::TapeCommand;

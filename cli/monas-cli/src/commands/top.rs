@@ -16,9 +16,9 @@ use ratatui::DefaultTerminal;
 use ratatui::crossterm::event::{self, Event, KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
 
 use crate::remote::{RunSelector, connection, failure, unexpected_reply};
-use crate::terminal::{CommandFailure, CommandOutput, Exit, Format, Interrupt, WallClock, duration};
 use draw::Screen;
 use metrics::Metrics;
+use monas_terminal::{CommandFailure, CommandOutput, Exit, Format, Interrupt, WallClock, duration};
 
 /// Arguments of `monas top`.
 #[derive(Args, Debug)]

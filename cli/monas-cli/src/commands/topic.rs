@@ -7,8 +7,9 @@ mod publish;
 mod schemas;
 mod stream_statistics;
 
+use monas_terminal::{CommandFailure, CommandOutput, Exit};
+
 use crate::remote::LinkTargets;
-use crate::terminal::{CommandFailure, CommandOutput, Exit};
 use arguments::TopicCommand;
 
 pub(crate) use arguments::TopicArguments;

@@ -13,10 +13,9 @@ use monas_vision::{
 };
 use serde_json::json;
 
-use crate::terminal::table::of_numbers;
-use crate::terminal::{CommandFailure, CommandOutput, Exit, Format, FormatArgument};
-
 use calibrate::SampleArgument;
+use monas_terminal::table::of_numbers;
+use monas_terminal::{CommandFailure, CommandOutput, Exit, Format, FormatArgument};
 
 /// Arguments of `monas vision`.
 #[derive(Args, Debug)]

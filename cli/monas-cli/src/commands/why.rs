@@ -8,10 +8,10 @@ use monas_studio::{
     TransitionQuestion, Verdict, WhyQuestion,
 };
 use monas_tape::Recording;
+use monas_terminal::{CommandFailure, CommandOutput, Exit, Format, FormatArgument, duration, failed};
 use serde_json::{Value, json};
 
 use crate::input::recorded_charts;
-use crate::terminal::{CommandFailure, CommandOutput, Exit, Format, FormatArgument, duration, failed};
 
 #[derive(Args, Debug)]
 pub(crate) struct WhyArguments {

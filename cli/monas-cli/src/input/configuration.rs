@@ -7,9 +7,8 @@ use monas::{Registry, Talws};
 #[cfg(feature = "soccer")]
 use monas_match::MatchSource;
 use monas_project::differences;
+use monas_terminal::{CommandFailure, Format};
 use yase::{Diagnostic, Source};
-
-use crate::terminal::{CommandFailure, Format};
 
 /// The configuration that is read when none is named.
 pub(crate) const DEFAULT_CONFIGURATION: &str = "config/agents.xml";

@@ -5,9 +5,8 @@ use std::sync::Arc;
 
 use aseme_models::convert::Model;
 use monas::config;
+use monas_terminal::{CommandFailure, CommandOutput, Format, report};
 use yase::{Diagnostic, Source, Statechart};
-
-use crate::terminal::{CommandFailure, CommandOutput, Format, report};
 
 /// The model in a file, its text, format and warnings. Reports the warnings; fails on errors.
 pub(crate) fn valid_model(

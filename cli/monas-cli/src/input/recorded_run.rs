@@ -12,11 +12,11 @@ use monas::{Agent, ConfigurationBundle, HostConfig, Registry, Talws};
 use monas_match::MatchSource;
 use monas_studio::TapeChart;
 use monas_tape::{CONTINUATION, Channel, Recording, RecordingItem, TapeOverview};
+use monas_terminal::{CommandFailure, Format, failed};
 use yase::{Diagnostic, Statechart};
 
 use super::configuration::{ConfigurationKind, kind_of};
 use super::layers::{self, LayerArguments};
-use crate::terminal::{CommandFailure, Format, failed};
 
 /// The description of a run on its tape.
 pub(crate) struct RecordedRun {

@@ -2,10 +2,10 @@
 
 use clap_complete::engine::CompletionCandidate;
 use monas::records::Inquiry;
+use monas_terminal::{Format, FormatArgument};
 
 use super::request::request;
 use super::run_selector::RunSelector;
-use crate::terminal::{Format, FormatArgument};
 
 /// The names of the agents of the only run, if there is one.
 pub(crate) fn agents() -> Vec<CompletionCandidate> {

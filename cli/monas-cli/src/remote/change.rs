@@ -1,11 +1,11 @@
 //! Changes of a run: the request, and its outcome as text or JSON.
 
 use monas::records::{Change, Changed, Finding, Inquiry};
+use monas_terminal::{CommandFailure, CommandOutput, Exit, Format};
 use serde_json::json;
 
 use super::request::{request, unexpected_reply};
 use super::run_selector::RunSelector;
-use crate::terminal::{CommandFailure, CommandOutput, Exit, Format};
 
 /// Requests a change, and returns its outcome.
 pub(crate) fn request_change(change: Change, run: &RunSelector) -> Result<Changed, CommandFailure> {

@@ -4,10 +4,10 @@ use std::path::PathBuf;
 
 use monas_link::ErrorKind;
 use monas_link::control::ControlClient;
+use monas_terminal::{CommandFailure, Format};
 
 use super::live_runs::live_runs;
 use super::run_selector::RunSelector;
-use crate::terminal::{CommandFailure, Format};
 
 /// The control socket of the selected run.
 pub(crate) fn socket(choice: &RunSelector) -> Result<PathBuf, CommandFailure> {

@@ -9,11 +9,11 @@ use std::time::Duration;
 
 use monas::{HostConfig, LinkConfig, RealTimeRun, Registry, Talws};
 use monas_link::control::ControlServer;
+use monas_terminal::{CommandFailure, Format, WallClock};
 use tempfile::TempDir;
 use yase::Diagnostic;
 
 use super::connection::failure;
-use crate::terminal::{CommandFailure, Format, WallClock};
 
 /// How long to wait for a peer.
 const PATIENCE: Duration = Duration::from_secs(5);

@@ -1,11 +1,11 @@
 //! Inquiries to a run.
 
 use monas::records::{Inquiry, Reply};
+use monas_terminal::CommandFailure;
 use prost::Message;
 
 use super::connection::{self, failure};
 use super::run_selector::RunSelector;
-use crate::terminal::CommandFailure;
 
 /// The reply of the selected run to an inquiry.
 pub(crate) fn request(inquiry: Inquiry, run: &RunSelector) -> Result<Reply, CommandFailure> {

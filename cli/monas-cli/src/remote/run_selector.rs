@@ -4,9 +4,9 @@ use std::path::PathBuf;
 
 use clap::Args;
 use clap_complete::engine::{ArgValueCandidates, CompletionCandidate};
+use monas_terminal::FormatArgument;
 
 use super::live_runs;
-use crate::terminal::FormatArgument;
 
 /// Selects a run, and the format of results.
 #[derive(Args, Debug)]

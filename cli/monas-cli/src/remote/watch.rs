@@ -5,10 +5,10 @@ use std::time::Duration;
 use clap::Args;
 use monas_link::control::WatchStream;
 use monas_link::control::messages::Seen;
+use monas_terminal::{CommandFailure, CommandOutput, Exit, Interrupt, WallClock, duration};
 
 use super::connection::{self, failure};
 use super::run_selector::RunSelector;
-use crate::terminal::{CommandFailure, CommandOutput, Exit, Interrupt, WallClock, duration};
 
 /// The longest wait before the limits are checked.
 const LOOK: Duration = Duration::from_millis(20);

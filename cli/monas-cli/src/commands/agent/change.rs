@@ -5,10 +5,10 @@ use std::io::Read;
 use std::path::Path;
 
 use monas::records::{Action, Change, Changed, Setting};
+use monas_terminal::{CommandFailure, CommandOutput, Exit};
 
 use super::arguments::{AgentCommand, AgentOrChart, OneAgent};
 use crate::remote::{RunSelector, print_outcome, request_change};
-use crate::terminal::{CommandFailure, CommandOutput, Exit};
 
 pub(crate) fn execute(
     command: &AgentCommand,

@@ -1,10 +1,10 @@
 //! `monas agent list`: the agents of a run with their statistics.
 
 use monas::records::{ActivityEntry, AgentEntry, Inquiry, Times};
+use monas_terminal::{CommandFailure, CommandOutput, Exit, Format, memory, millis, table};
 use serde_json::{Value, json};
 
 use crate::remote::{RunSelector, request, unexpected_reply};
-use crate::terminal::{CommandFailure, CommandOutput, Exit, Format, memory, millis, table};
 
 pub(crate) fn execute(
     agent: Option<&str>,

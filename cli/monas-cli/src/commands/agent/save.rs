@@ -3,10 +3,10 @@
 use std::path::Path;
 
 use monas::records::Inquiry;
+use monas_terminal::{CommandFailure, CommandOutput, Exit, Format};
 use serde_json::json;
 
 use crate::remote::{RunSelector, request, unexpected_reply};
-use crate::terminal::{CommandFailure, CommandOutput, Exit, Format};
 
 pub(crate) fn execute(
     file: Option<&Path>,

@@ -3,12 +3,12 @@
 use std::path::Path;
 
 use monas::records::{ChartChoice, ChartState, Inquiry};
+use monas_terminal::{CommandFailure, CommandOutput, Exit, Format};
 use serde_json::{Value, json};
 use yase::StateNames;
 use yase::snapshot::{ActivityPhase, EventName, OccurrenceRecord, Snapshot};
 
 use crate::remote::{RunSelector, request, unexpected_reply};
-use crate::terminal::{CommandFailure, CommandOutput, Exit, Format};
 
 pub(crate) fn execute(
     agent: &str,

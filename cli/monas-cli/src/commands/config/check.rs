@@ -2,9 +2,10 @@
 
 use std::path::Path;
 
+use monas_terminal::{CommandFailure, CommandOutput, Exit, Format, report};
+
 use super::ConfigArguments;
 use crate::input::{checked_with, layers};
-use crate::terminal::{CommandFailure, CommandOutput, Exit, Format, report};
 
 pub(crate) fn execute(
     arguments: &ConfigArguments,

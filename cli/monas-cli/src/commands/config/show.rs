@@ -5,12 +5,12 @@ use std::io::{self, Write};
 use monas::config::{self, ResolvedEntry};
 #[cfg(feature = "soccer")]
 use monas_match::MatchSource;
+use monas_terminal::{CommandFailure, CommandOutput, Exit, Format, report};
 use serde_json::{Value, json};
 use yase::Diagnostic;
 
 use super::ConfigArguments;
 use crate::input::{ConfigurationKind, grammar, kind_of, layers};
-use crate::terminal::{CommandFailure, CommandOutput, Exit, Format, report};
 
 /// The widest left column, in characters; longer lines push their origin to the right.
 const WIDEST: usize = 64;

@@ -2,8 +2,9 @@
 
 use std::time::Duration;
 
+use monas_terminal::{Interrupt, WallClock};
+
 use super::CheckResult;
-use crate::terminal::{Interrupt, WallClock};
 
 const AREA: &str = "clock";
 /// How many waits of 1 ms are measured.

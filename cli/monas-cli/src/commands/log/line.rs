@@ -2,10 +2,10 @@
 
 use monas::Timestamp;
 use monas::records::foxglove::Log;
+use monas_terminal::{CommandFailure, CommandOutput, Format};
 use serde_json::json;
 
 use super::Severity;
-use crate::terminal::{CommandFailure, CommandOutput, Format};
 
 /// A line with its origin.
 pub(crate) struct LogLine<'a> {

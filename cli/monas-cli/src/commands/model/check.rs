@@ -8,11 +8,11 @@ use std::path::{Path, PathBuf};
 use aseme_verify::{CheckSettings, check::CheckReport};
 use clap::{Args, ValueEnum, ValueHint};
 use monas::config;
+use monas_terminal::{CommandFailure, CommandOutput, Exit, Format, report};
 use yase::Severity;
 
 use super::exploration::{ExplorationArguments, extent};
 use super::{finding, program};
-use crate::terminal::{CommandFailure, CommandOutput, Exit, Format, report};
 use properties::CheckedProperty;
 
 /// Formats of findings about models.

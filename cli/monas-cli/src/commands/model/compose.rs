@@ -9,6 +9,7 @@ use aseme_models::iac::ChartKind;
 use aseme_verify::composition::{Channels, Composition, compose};
 use aseme_verify::{CheckSettings, protocol::parts_taken};
 use clap::{Args, ValueHint};
+use monas_terminal::{CommandFailure, CommandOutput, Exit, Format, FormatArgument, report};
 use serde_json::json;
 use yase::Source;
 
@@ -16,7 +17,6 @@ use super::exploration::ExplorationArguments;
 use super::robot_file::{name_of, named};
 use super::{conform, finding, program};
 use crate::input::{valid_chart, valid_model};
-use crate::terminal::{CommandFailure, CommandOutput, Exit, Format, FormatArgument, report};
 
 /// Arguments of `monas model compose`.
 #[derive(Args, Debug)]

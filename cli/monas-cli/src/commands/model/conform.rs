@@ -8,11 +8,11 @@ use aseme_models::iac::ChartKind;
 use aseme_models::{Aip, Iac, transformations};
 use aseme_verify::protocol::{Conformance, chart_conforms, parts_taken, player_conforms, role_chart};
 use clap::{Args, ValueHint};
+use monas_terminal::{CommandFailure, CommandOutput, Exit, Format, FormatArgument, report};
 use serde_json::json;
 use yase::{Diagnostic, Source};
 
 use crate::input::valid_model;
-use crate::terminal::{CommandFailure, CommandOutput, Exit, Format, FormatArgument, report};
 
 /// Arguments of `monas model conform`.
 #[derive(Args, Debug)]

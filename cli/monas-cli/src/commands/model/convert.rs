@@ -4,10 +4,10 @@ use std::path::{Path, PathBuf};
 
 use aseme_models::convert::{Format as ModelFormat, Model};
 use clap::{Args, ValueHint};
+use monas_terminal::{CommandFailure, CommandOutput, Exit, FormatArgument, write_text};
 
 use super::model_format::{named, text_of};
 use crate::input::valid_model;
-use crate::terminal::{CommandFailure, CommandOutput, Exit, FormatArgument, write_text};
 
 /// Arguments of `monas model convert`.
 #[derive(Args, Debug)]

@@ -20,8 +20,8 @@ use yase::{Element, NodeId, NodeKind, TransitionId};
 use yase_export::{Highlights, Mark, to_svg_marked};
 
 use crate::input::recorded_hosts;
-use crate::terminal::{CommandFailure, CommandOutput, Exit, Format, FormatArgument, failed};
 use count::{ChartCounts, UncoveredElement};
+use monas_terminal::{CommandFailure, CommandOutput, Exit, Format, FormatArgument, failed};
 
 /// Arguments of `monas model coverage`.
 #[derive(Args, Debug)]

@@ -4,12 +4,12 @@ use std::path::{Path, PathBuf};
 
 use aseme_models::diff::{self, ChangedPart, ChartChange, ChartDifference};
 use clap::{Args, ValueHint};
+use monas_terminal::{CommandFailure, CommandOutput, Exit, Format, FormatArgument, write_text};
 use serde_json::{Value, json};
 use yase::Statechart;
 use yase_export as export;
 
 use crate::input::valid_chart;
-use crate::terminal::{CommandFailure, CommandOutput, Exit, Format, FormatArgument, write_text};
 
 /// Arguments of `monas model diff`.
 #[derive(Args, Debug)]

@@ -4,9 +4,8 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueHint};
 use monas::config;
+use monas_terminal::{CommandFailure, CommandOutput, Exit, FormatArgument, report, write_text};
 use yase::statechart::Layout;
-
-use crate::terminal::{CommandFailure, CommandOutput, Exit, FormatArgument, report, write_text};
 
 /// Arguments of `monas model draw`.
 #[derive(Args, Debug)]

@@ -7,9 +7,8 @@ use std::time::Duration;
 use aseme_verify::{CheckProgress, CheckSettings, ExplorationExtent, ProgressObserver};
 use clap::Args;
 use indicatif::ProgressBar;
+use monas_terminal::{CommandFailure, CommandOutput, Format, Interrupt, WallClock};
 use yase_explore::{ExplorationProgress, ExplorationStop};
-
-use crate::terminal::{CommandFailure, CommandOutput, Format, Interrupt, WallClock};
 
 /// The time after which progress is shown first, if standard error is a terminal.
 const QUIET: Duration = Duration::from_secs(1);

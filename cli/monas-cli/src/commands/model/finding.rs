@@ -5,8 +5,7 @@ use std::fs;
 use std::path::Path;
 
 use aseme_verify::{Finding, check::CheckReport};
-
-use crate::terminal::{CommandFailure, CommandOutput, Format, report};
+use monas_terminal::{CommandFailure, CommandOutput, Format, report};
 
 /// Prints the trace to a finding, if there is one.
 pub(crate) fn way_there(finding: &Finding, console: &mut CommandOutput<'_>) -> Result<(), CommandFailure> {

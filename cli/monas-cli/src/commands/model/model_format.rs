@@ -3,9 +3,8 @@
 use std::sync::Arc;
 
 use aseme_models::convert::{Format as ModelFormat, Model};
+use monas_terminal::{CommandFailure, CommandOutput, Format, report};
 use yase::{Diagnostic, Source};
-
-use crate::terminal::{CommandFailure, CommandOutput, Format, report};
 
 /// The format of a name.
 pub(crate) fn named(word: &str) -> Result<ModelFormat, CommandFailure> {

@@ -13,8 +13,8 @@ use yase::Diagnostic;
 
 use super::scenario;
 use super::scenario::Scenario;
-use crate::terminal::{CommandFailure, CommandOutput, Exit, FormatArgument};
 use evaluate::ScenarioTrace;
+use monas_terminal::{CommandFailure, CommandOutput, Exit, FormatArgument};
 
 /// Arguments of `monas model mutate`.
 #[derive(Args, Debug)]

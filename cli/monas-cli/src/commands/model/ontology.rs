@@ -5,10 +5,10 @@ use std::path::PathBuf;
 use aseme_models::convert::Model;
 use aseme_models::ontology;
 use clap::{Args, ValueHint};
+use monas_terminal::{CommandFailure, CommandOutput, Exit, FormatArgument, report, write_text};
 use yase::Diagnostic;
 
 use crate::input::valid_model;
-use crate::terminal::{CommandFailure, CommandOutput, Exit, FormatArgument, report, write_text};
 
 /// Arguments of `monas model ontology`.
 #[derive(Args, Debug)]

@@ -2,8 +2,7 @@
 
 use aseme_verify::ProgramSymbols;
 use monas::Registry;
-
-use crate::terminal::{CommandFailure, Format};
+use monas_terminal::{CommandFailure, Format};
 
 /// Prefixes of the topics that the runtime, bodies and the simulator publish and read.
 const ELSEWHERE: [&str; 3] = ["monas/", BODY, "sim/"];

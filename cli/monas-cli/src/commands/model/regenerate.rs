@@ -8,10 +8,10 @@ use aseme_models::convert::Model;
 use aseme_models::regenerate::{self, RegeneratedRole};
 use clap::{Args, ValueHint};
 use monas::config;
+use monas_terminal::{CommandFailure, CommandOutput, Exit, Format, FormatArgument, report, write_text};
 use yase::Diagnostic;
 
 use crate::input::valid_model;
-use crate::terminal::{CommandFailure, CommandOutput, Exit, Format, FormatArgument, report, write_text};
 
 /// Arguments of `monas model regenerate`.
 #[derive(Args, Debug)]

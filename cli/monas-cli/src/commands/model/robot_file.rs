@@ -3,7 +3,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::terminal::CommandFailure;
+use monas_terminal::CommandFailure;
 
 /// The robots' names and files: the name is the part before `=`, or the stem of the file.
 ///

@@ -6,13 +6,13 @@ use std::sync::Arc;
 use aseme_verify::composition::{PlayedStep, TeamTrace};
 use clap::{Args, ValueHint};
 use monas::config;
+use monas_terminal::{CommandFailure, CommandOutput, Exit, Format, FormatArgument};
 use serde_json::json;
 use yase::{CompiledChart, Diagnostic, Machine, MachineError, Source, Span};
 use yase_explore::{ParseError, Trace, TraceStep, replay};
 
 use super::robot_file::named;
 use super::scenario;
-use crate::terminal::{CommandFailure, CommandOutput, Exit, Format, FormatArgument};
 
 /// Arguments of `monas model run`.
 #[derive(Args, Debug)]

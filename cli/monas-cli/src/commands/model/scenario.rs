@@ -7,10 +7,9 @@ use std::sync::Arc;
 use aseme_verify::scenario::{ScenarioLink, ScenarioStep, ScenarioText};
 use monas::scenario::{ScenarioDifference, ScenarioRunner, StepResult};
 use monas::{Registry, config};
+use monas_terminal::{CommandFailure, CommandOutput, Exit, Format, report};
 use serde_json::{Value, json};
 use yase::{CompiledChart, Diagnostic, Source};
-
-use crate::terminal::{CommandFailure, CommandOutput, Exit, Format, report};
 
 /// The extension of scenario files.
 const ENDING: &str = "scenario";

@@ -8,12 +8,12 @@ use aseme_models::iac::{ChartKind, Iac};
 use aseme_models::{Aip, SystemRoles, transformations};
 use clap::{Args, ValueEnum, ValueHint};
 use monas::Registry;
+use monas_terminal::{CommandFailure, CommandOutput, Exit, Format, FormatArgument, report, write_text};
 use yase::{Diagnostic, Source};
 
 use super::model_format::{named, text_of};
 use super::program;
 use crate::input::{valid_chart, valid_model};
-use crate::terminal::{CommandFailure, CommandOutput, Exit, Format, FormatArgument, report, write_text};
 
 /// The kinds of models that a transformation yields.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, ValueEnum)]

@@ -4,10 +4,10 @@ use std::path::PathBuf;
 
 use clap::{Subcommand, ValueHint};
 use clap_complete::engine::{ArgValueCandidates, CompletionCandidate};
+use monas_terminal::{Format, FormatArgument};
 
 use super::list;
 use crate::remote::RunSelector;
-use crate::terminal::{Format, FormatArgument};
 
 #[derive(Subcommand, Debug)]
 pub(crate) enum ModuleCommand {

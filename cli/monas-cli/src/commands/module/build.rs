@@ -11,10 +11,9 @@ use std::process::{Command, Stdio};
 
 use monas::{BuildFingerprint, ModuleFile};
 use monas_project::Project;
+use monas_terminal::{CommandFailure, CommandOutput, Exit, Format, report};
 use serde_json::{Value, json};
 use yase::Diagnostic;
-
-use crate::terminal::{CommandFailure, CommandOutput, Exit, Format, report};
 
 pub(crate) fn execute(
     package: Option<&str>,

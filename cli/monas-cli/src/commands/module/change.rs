@@ -4,10 +4,10 @@ use std::path::Path;
 
 use monas::ModuleFile;
 use monas::records::{Action, Change};
+use monas_terminal::{CommandFailure, CommandOutput, Exit, Format};
 
 use super::list;
 use crate::remote::{RunSelector, print_outcome, request_change};
-use crate::terminal::{CommandFailure, CommandOutput, Exit, Format};
 
 pub(crate) fn load(
     path: &Path,

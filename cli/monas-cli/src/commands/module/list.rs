@@ -1,10 +1,10 @@
 //! `monas module list`: the loaded modules of a run.
 
 use monas::records::{Inquiry, ModuleEntry};
+use monas_terminal::{CommandFailure, CommandOutput, Exit, Format, table};
 use serde_json::json;
 
 use crate::remote::{RunSelector, request, unexpected_reply};
-use crate::terminal::{CommandFailure, CommandOutput, Exit, Format, table};
 
 pub(crate) fn execute(run: &RunSelector, console: &mut CommandOutput<'_>) -> Result<Exit, CommandFailure> {
     let modules = loaded(run)?;

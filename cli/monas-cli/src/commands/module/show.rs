@@ -3,9 +3,8 @@
 use std::path::Path;
 
 use monas::ModuleFile;
+use monas_terminal::{CommandFailure, CommandOutput, Exit, Format, report};
 use serde_json::{Map, Value};
-
-use crate::terminal::{CommandFailure, CommandOutput, Exit, Format, report};
 
 pub(crate) fn execute(
     path: &Path,

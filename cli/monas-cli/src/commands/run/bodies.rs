@@ -3,9 +3,8 @@
 use std::io::{self, Write};
 
 use monas::{BodyStatistics, Percentiles};
+use monas_terminal::{Format, table};
 use serde_json::{Value, json};
-
-use crate::terminal::{Format, table};
 
 /// Writes a table of the bodies, or one object for each.
 pub(super) fn write(out: &mut dyn Write, format: Format, bodies: &[BodyStatistics]) -> io::Result<()> {

@@ -5,8 +5,8 @@ use monas_studio::{Pace, Studio};
 use monas_tape::Tape;
 
 use super::RunArguments;
-use crate::terminal::{CommandFailure, CommandOutput};
 
+use monas_terminal::{CommandFailure, CommandOutput};
 #[cfg(feature = "soccer")] // only matches name the type
 pub(crate) use socket::ControlSocket;
 pub(crate) use socket::{bind, serve, view};
@@ -43,7 +43,7 @@ mod socket {
         CommandFailure, CommandOutput, NAMESAKES, Pace, RunArguments, RunHandle, Studio, Tape, name_of,
     };
     use crate::commands::studio;
-    use crate::terminal::Format;
+    use monas_terminal::Format;
 
     /// A run with the alarms of its recording.
     struct RecordedRun {

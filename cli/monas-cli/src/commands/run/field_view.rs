@@ -5,9 +5,9 @@ use std::io::{self, Write};
 use std::time::Duration;
 
 use monas_match::RunningMatch;
+use monas_terminal::{CommandOutput, Repaint};
 
 use super::scoreboard::{Scoreboard, clock, event_line, score_line};
-use crate::terminal::{CommandOutput, Repaint};
 
 /// The size of the field on a terminal with 80 columns and 24 rows, of which the score, the last
 /// event and the cursor take three.

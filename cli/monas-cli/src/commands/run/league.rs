@@ -6,8 +6,7 @@ use std::time::Duration;
 use clap::{Args, ValueEnum};
 use monas_gamecontroller::{ControlReceiver, ControlSender, Endpoint, RETURN_PORT, RuleBook};
 use monas_match::MatchPlan;
-
-use crate::terminal::duration;
+use monas_terminal::duration;
 
 /// The match's end of the league's protocol.
 #[derive(Args, Debug)]

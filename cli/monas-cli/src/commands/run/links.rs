@@ -3,9 +3,8 @@
 use std::io::{self, Write};
 
 use monas::LinkStatistics;
+use monas_terminal::table;
 use serde_json::{Value, json};
-
-use crate::terminal::table;
 
 /// Writes a table of what was sent, one of what was received, and mismatches; nothing if there are
 /// no links.

@@ -10,13 +10,13 @@ use monas_robot::Announcement;
 use monas_robot::topics::ANNOUNCEMENT;
 use monas_studio::Pace;
 use monas_tape::Tape;
+use monas_terminal::{CommandFailure, CommandOutput, Exit, Format, Interrupt, WallClock};
 use narukom::Timestamp;
 use serde_json::json;
 
 use super::outputs::RecordingAlarm;
 use super::pacer::{Pacer, factor};
 use super::{RunArguments, control, outputs, real_time};
-use crate::terminal::{CommandFailure, CommandOutput, Exit, Format, Interrupt, WallClock};
 
 /// Simulated time between two looks at the interrupt and the pace.
 const LOOK: Duration = Duration::from_millis(20);

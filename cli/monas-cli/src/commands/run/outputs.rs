@@ -9,10 +9,11 @@ use monas::records::foxglove::Log;
 use monas::records::foxglove::log::Level;
 use monas::{RunHandle, Timestamp};
 use monas_tape::{ExistingFile, RecordingFolder, RecordingLimits, Tape, TapeFile};
+use monas_terminal::{CommandFailure, CommandOutput, Format, failed, report};
 use yase::Diagnostic;
 
 use super::{RunArguments, control};
-use crate::terminal::{CommandFailure, CommandOutput, Format, crash_report, failed, report};
+use crate::crash_report;
 
 /// The name under which alarms are published.
 const PUBLISHER: &str = "recording";

@@ -3,9 +3,9 @@
 use std::time::Duration;
 
 use monas_studio::Pace;
+use monas_terminal::{Interrupt, WallClock};
 
 use super::RunArguments;
-use crate::terminal::{Interrupt, WallClock};
 
 /// The longest wait before a run looks after requests.
 const PATIENCE: Duration = Duration::from_millis(50);

@@ -6,6 +6,7 @@ use monas::config::Layers;
 use monas_match::{MatchOptions, MatchPlan, MatchSource, RunningMatch};
 use monas_studio::Pace;
 use monas_tape::Tape;
+use monas_terminal::{CommandFailure, CommandOutput, Exit, Interrupt, WallClock, report};
 
 use super::outputs::RecordingAlarm;
 use super::pacer::{Pacer, factor};
@@ -14,7 +15,6 @@ use super::processes::{self, RobotProcesses};
 #[cfg(unix)]
 use super::real_time;
 use super::{RunArguments, control, outputs, scoreboard, summary};
-use crate::terminal::{CommandFailure, CommandOutput, Exit, Interrupt, WallClock, report};
 
 /// Simulated time between two updates of the scoreboard.
 const LOOK: Duration = Duration::from_millis(100);

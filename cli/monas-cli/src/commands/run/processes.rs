@@ -9,11 +9,11 @@ use std::time::Duration;
 use monas_link::control::ControlSocket;
 use monas_link::default_folder;
 use monas_match::MatchPlan;
+use monas_terminal::{Format, WallClock};
 use rustix::process::{Pid, Signal, kill_process};
 use tempfile::{NamedTempFile, TempDir};
 
 use super::RunArguments;
-use crate::terminal::{Format, WallClock};
 
 /// The variable that names the process of the match to that of a robot.
 const PARENT: &str = "MONAS_MATCH_PROCESS";

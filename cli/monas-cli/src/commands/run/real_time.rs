@@ -6,13 +6,13 @@ use std::time::Duration;
 use monas::config::Layers;
 use monas::{AgentStatistics, ConfigurationBundle, Registry, Statistics, Talws};
 use monas_tape::Tape;
+use monas_terminal::{CommandFailure, CommandOutput, Exit, Format, Interrupt, WallClock, report, table};
 use serde_json::{Value, json};
 use yase::Diagnostic;
 
 use super::outputs::RecordingAlarm;
 use super::{RunArguments, bodies, control, links, lockstep, outputs};
 use crate::input::load_agents;
-use crate::terminal::{CommandFailure, CommandOutput, Exit, Format, Interrupt, WallClock, report, table};
 
 pub(crate) fn execute(
     arguments: &RunArguments,

@@ -5,9 +5,9 @@ use std::time::Duration;
 
 use indicatif::{MultiProgress, ProgressBar, ProgressStyle};
 use monas_match::{MatchEvent, RunningMatch};
+use monas_terminal::CommandOutput;
 
 use super::field_view::FieldView;
-use crate::terminal::CommandOutput;
 
 /// Shows the progress of a match.
 pub(crate) trait Scoreboard {

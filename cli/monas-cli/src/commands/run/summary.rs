@@ -4,11 +4,11 @@ use std::io::{self, Write};
 use std::time::Duration;
 
 use monas_match::{AgentSummary, LeagueCounts, MatchSummary, TeamSummary};
+use monas_terminal::table::Table;
+use monas_terminal::{Format, table};
 use serde_json::{Value, json};
 
 use super::{bodies, coverage, links};
-use crate::terminal::table::Table;
-use crate::terminal::{Format, table};
 
 /// Writes the results; `wall` is the wall-clock time of the match.
 pub(crate) fn write(

@@ -4,8 +4,7 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::{Args, Subcommand, ValueEnum, ValueHint};
-
-use crate::terminal::{FormatArgument, duration};
+use monas_terminal::{FormatArgument, duration};
 
 #[derive(Subcommand, Debug)]
 pub(crate) enum TapeCommand {

@@ -6,9 +6,9 @@ use std::time::Duration;
 use clap::{Args, ValueHint};
 use monas_match::RecordedField;
 use monas_tape::Recording;
+use monas_terminal::{CommandFailure, CommandOutput, Exit, FormatArgument, duration, failed, write_text};
 
 use crate::input::{ConfigurationKind, LayerArguments, kind_of, layers, recorded_configuration};
-use crate::terminal::{CommandFailure, CommandOutput, Exit, FormatArgument, duration, failed, write_text};
 
 /// The most pictures of an animation.
 const MOST: u128 = 10_000;

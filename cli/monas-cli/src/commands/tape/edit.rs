@@ -3,10 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use monas_tape::{Channel, MetadataEntry, Recording, TapeFilter};
+use monas_terminal::{CommandFailure, CommandOutput, Exit, Format, counted, failed};
 use serde_json::json;
 
 use super::arguments::CutArguments;
-use crate::terminal::{CommandFailure, CommandOutput, Exit, Format, counted, failed};
 
 pub(crate) fn recover(
     file: &Path,

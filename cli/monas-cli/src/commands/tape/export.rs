@@ -5,11 +5,11 @@ use std::io::{BufWriter, Write};
 
 use monas_files::AtomicFile;
 use monas_tape::{Decoder, RecordedSample, Recording, Value};
+use monas_terminal::{CommandFailure, CommandOutput, Exit, Format, failed};
 use serde_json::json;
 
 use super::arguments::{ExportArguments, ExportFormat};
 use super::value_text;
-use crate::terminal::{CommandFailure, CommandOutput, Exit, Format, failed};
 
 /// The columns before those of the message's fields.
 const HEADER: [&str; 5] = ["seconds", "host", "publisher", "topic", "sequence"];

@@ -5,9 +5,8 @@ use std::path::Path;
 
 use monas::Timestamp;
 use monas_tape::{ChannelOverview, Recording, TapeOverview};
+use monas_terminal::{CommandFailure, CommandOutput, Exit, Format, counted, failed, grouped, size, table};
 use serde_json::{Value, json};
-
-use crate::terminal::{CommandFailure, CommandOutput, Exit, Format, counted, failed, grouped, size, table};
 
 pub(crate) fn execute(
     file: &Path,

@@ -12,12 +12,12 @@ use monas::replay::{
     ComparisonCounts, RecordedMessage, RecordedStream, Replay, ReplayChannel, ReplayDifference,
 };
 use monas_tape::{Channel, RecordedSample, Recording, TapeOverview};
+use monas_terminal::{CommandFailure, CommandOutput, Exit, Format, WallClock, failed};
 
 use super::arguments::ReplayArguments;
 #[cfg(unix)]
 use crate::commands::studio;
 use crate::input::{self, chosen_hosts, run_of};
-use crate::terminal::{CommandFailure, CommandOutput, Exit, Format, WallClock, failed};
 
 /// The result of a replay.
 struct ReplayOutcome {

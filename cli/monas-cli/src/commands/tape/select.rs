@@ -2,9 +2,9 @@
 
 use monas::Timestamp;
 use monas_tape::{Channel, RecordedSample, TapeOverview};
+use monas_terminal::CommandFailure;
 
 use super::arguments::MessageSelection;
-use crate::terminal::CommandFailure;
 
 impl MessageSelection {
     /// Whether messages of a channel are selected.

@@ -10,6 +10,7 @@ use monas::records::{Action, Change, Setting};
 use monas_match::{MatchOptions, MatchPlan, MatchSource};
 use monas_studio::{TapeChart, TapeRun};
 use monas_tape::{Recording, Tape};
+use monas_terminal::{CommandFailure, CommandOutput, Exit, Format, FormatArgument, duration, failed, table};
 use serde_json::{Value, json};
 use yase::expression::{Expression, parse_transition};
 
@@ -17,7 +18,6 @@ use crate::commands::studio::scene;
 use crate::input::{
     ConfigurationKind, LayerArguments, kind_of, layers, recorded_charts, recorded_configuration, run_of,
 };
-use crate::terminal::{CommandFailure, CommandOutput, Exit, Format, FormatArgument, duration, failed, table};
 
 /// Arguments of `monas tape what-if`.
 #[derive(Args, Debug)]

@@ -1,5 +1,6 @@
 //! Metrics on the whole terminal.
 
+use monas_terminal::table::{FoldedRow, of_numbers};
 use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout, Rect};
 use ratatui::style::{Color, Modifier, Style};
@@ -9,7 +10,6 @@ use ratatui::widgets::{Block, Cell, Row, Table, TableState};
 use super::metrics::{ActivityFigures, ActivityRemark, AgentFigures, Metrics};
 use super::sample;
 use super::sample::{ACTIVITY_HEADER, AGENT_HEADER};
-use crate::terminal::table::{FoldedRow, of_numbers};
 
 const QUIET: Style = Style::new().fg(Color::DarkGray);
 const HEADER: Style = Style::new().add_modifier(Modifier::BOLD);

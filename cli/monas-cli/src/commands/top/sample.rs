@@ -2,10 +2,10 @@
 
 use std::io::{self, Write};
 
+use monas_terminal::{memory, millis, table};
 use serde_json::{Value, json};
 
 use super::metrics::{ActivityFigures, AgentFigures, Metrics};
-use crate::terminal::{memory, millis, table};
 
 /// How many topics are listed.
 const TOPICS: usize = 10;

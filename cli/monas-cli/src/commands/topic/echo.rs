@@ -1,11 +1,11 @@
 //! `monas topic echo`: prints messages as they are published.
 
 use monas_link::control::messages::Seen;
+use monas_terminal::{CommandFailure, CommandOutput, Exit, Format, seconds};
 use serde_json::{Value, json};
 
 use super::schemas::Schemas;
 use crate::remote::{RunSelector, WatchLimits, connection, watch};
-use crate::terminal::{CommandFailure, CommandOutput, Exit, Format, seconds};
 
 pub(crate) fn execute(
     pattern: &str,

@@ -1,12 +1,12 @@
 //! `monas topic list` and `info`.
 
 use monas_link::control::messages::TopicEntry;
+use monas_terminal::{CommandFailure, CommandOutput, Exit, Format, seconds, table};
 use prost_reflect::{Cardinality, FieldDescriptor};
 use serde_json::{Value, json};
 
 use super::schemas::Schemas;
 use crate::remote::{RunSelector, connection, failure};
-use crate::terminal::{CommandFailure, CommandOutput, Exit, Format, seconds, table};
 
 pub(crate) fn list(
     pattern: Option<&str>,

@@ -1,12 +1,12 @@
 //! `monas topic pub`: publishes a message.
 
+use monas_terminal::{CommandFailure, CommandOutput, Exit, Format};
 use prost_reflect::DynamicMessage;
 use prost_reflect::prost::Message as _;
 use serde_json::json;
 
 use super::schemas::Schemas;
 use crate::remote::{RunSelector, connection, failure};
-use crate::terminal::{CommandFailure, CommandOutput, Exit, Format};
 
 pub(crate) fn execute(
     topic: &str,

@@ -4,11 +4,11 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use monas_link::control::ControlClient;
+use monas_terminal::{CommandFailure, Format};
 use prost_reflect::MessageDescriptor;
 use serde_json::Value;
 
 use crate::remote::failure;
-use crate::terminal::{CommandFailure, Format};
 
 /// The message types of a run's topics, requested on first use.
 pub(crate) struct Schemas {

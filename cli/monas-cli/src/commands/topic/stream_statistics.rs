@@ -4,11 +4,11 @@ use std::collections::BTreeMap;
 use std::time::Duration;
 
 use monas_link::control::messages::Seen;
+use monas_terminal::{CommandFailure, CommandOutput, Exit, Format, Repaint, WallClock};
 use serde_json::{Value, json};
 
 use super::echo::place;
 use crate::remote::{RunSelector, WatchLimits, connection, failure, watch};
-use crate::terminal::{CommandFailure, CommandOutput, Exit, Format, Repaint, WallClock};
 
 /// Time until the first report.
 const FIRST: Duration = Duration::from_millis(80);

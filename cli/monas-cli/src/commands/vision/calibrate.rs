@@ -5,13 +5,13 @@ use std::path::Path;
 use monas::config::colours;
 use monas_scene::RgbImage;
 use monas_soccer::field_colours::field_colours;
+use monas_terminal::table::of_numbers;
+use monas_terminal::{CommandFailure, CommandOutput, Exit, Format};
 use monas_vision::{ColourClass, ColourModel, ColourSampler, Image, ObjectHue, SampleBox};
 use serde_json::json;
 use yase::diagnostic::nearest;
 
 use super::{VisionArguments, camera};
-use crate::terminal::table::of_numbers;
-use crate::terminal::{CommandFailure, CommandOutput, Exit, Format};
 
 /// A box of an image whose colour is known: `[FILE:]COLOUR=X,Y,WIDTH,HEIGHT`.
 #[derive(Clone, Debug)]

@@ -6,10 +6,9 @@ use std::sync::Arc;
 use aseme_verify::properties::{self, PropertyOutcome, PropertyResult};
 use aseme_verify::{CheckSettings, check::CheckReport};
 use monas::config;
+use monas_terminal::{CommandFailure, CommandOutput};
 use serde_json::json;
 use yase::Source;
-
-use crate::terminal::{CommandFailure, CommandOutput};
 
 /// The result of one property of one model.
 pub(crate) struct CheckedProperty {

@@ -3,12 +3,12 @@
 use std::sync::Arc;
 
 use aseme_verify::mutation::MutationKind;
+use monas_terminal::{CommandFailure, CommandOutput, Format};
 use serde_json::{Value, json};
 use yase::Source;
 
 use super::{EvaluatedMutant, MutantOutcome};
 use crate::commands::model::scenario::{Scenario, place};
-use crate::terminal::{CommandFailure, CommandOutput, Format};
 
 /// The outcomes of all mutants of a model.
 pub(crate) struct MutationReport<'a> {

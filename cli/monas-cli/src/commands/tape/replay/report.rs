@@ -4,12 +4,12 @@ use std::io::Write;
 
 use monas::replay::{ComparisonCounts, ReplayDifference};
 use monas_tape::{Channel, Decoder, FieldDifference, Recording, TapeOverview, Value};
+use monas_terminal::{CommandFailure, Format, counted, grouped, table};
 use serde_json::{Value as Json, json};
 
 use super::ReplayOutcome;
 use super::names::AgentNames;
 use crate::commands::tape::value_text;
-use crate::terminal::{CommandFailure, Format, counted, grouped, table};
 
 /// The largest number of fields of one message in the text.
 const MOST_FIELDS: usize = 12;

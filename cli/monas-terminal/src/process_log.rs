@@ -18,7 +18,7 @@ fn usual(level: LevelFilter) -> Targets {
 
 /// The log of this process: filtered lines on standard error, and the log that `--log` configures.
 #[derive(Clone)]
-pub(crate) struct ProcessLog {
+pub struct ProcessLog {
     logger: Logger,
     filter: reload::Handle<Targets, Registry>,
     bars: MultiProgress,
@@ -28,7 +28,7 @@ pub(crate) struct ProcessLog {
 
 impl ProcessLog {
     /// Starts the log on standard error, above progress bars.
-    pub(crate) fn begin(bars: &MultiProgress) -> Option<ProcessLog> {
+    pub fn begin(bars: &MultiProgress) -> Option<ProcessLog> {
         let asked = std::env::var("MONAS_LOG");
         let is_chosen = asked.is_ok();
         let asked = asked.map_or(Ok(usual(LevelFilter::WARN)), |text| text.parse());
@@ -50,7 +50,7 @@ impl ProcessLog {
     }
 
     /// Logs lines of this level and graver ones on standard error, unless MONAS_LOG is set.
-    pub(crate) fn limit(&mut self, level: LevelFilter) {
+    pub fn limit(&mut self, level: LevelFilter) {
         if !std::mem::replace(&mut self.is_chosen, true) {
             // This fails only after the log has ended.
             let _ = self.filter.reload(usual(level));
@@ -58,19 +58,19 @@ impl ProcessLog {
     }
 
     /// Flushes and ends the log.
-    pub(crate) fn end(&self) {
+    pub fn end(&self) {
         self.logger.end();
     }
 
     /// From now on, publishes lines of at least this severity on the hosts of the run.
-    pub(crate) fn publish(&self, least_grave: Severity) {
+    pub fn publish(&self, least_grave: Severity) {
         self.logger.publish(least_grave);
     }
 
     /// Starts the configured log. It replaces the lines on standard error unless MONAS_LOG or an
     /// option chose them.
     /// Returns the path of its file, which differs from the configured one if that exists.
-    pub(crate) fn write(&self, settings: LogSettings, existing: ExistingFile) -> io::Result<Option<PathBuf>> {
+    pub fn write(&self, settings: LogSettings, existing: ExistingFile) -> io::Result<Option<PathBuf>> {
         let bars = self.bars.clone();
         let file = self.logger.begin_with(settings, existing, move |lines| {
             // If standard error is closed there is nowhere to report that.

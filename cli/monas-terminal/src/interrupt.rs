@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::flag;
 
-use super::{CommandOutput, Exit};
+use crate::{CommandOutput, Exit};
 
 /// Signals that end a run.
 #[cfg(unix)]
@@ -17,7 +17,7 @@ const SIGNALS: [i32; 2] = [SIGINT, SIGTERM];
 
 /// Whether the user has requested the end of the run.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Interrupt {
+pub struct Interrupt {
     is_requested: Arc<AtomicBool>,
     /// The last signal; 0 before the first.
     signal: Arc<AtomicUsize>,
@@ -25,7 +25,7 @@ pub(crate) struct Interrupt {
 
 impl Interrupt {
     /// The interrupt for a run of this command.
-    pub(crate) fn for_console(console: &CommandOutput<'_>) -> io::Result<Interrupt> {
+    pub fn for_console(console: &CommandOutput<'_>) -> io::Result<Interrupt> {
         if console.catches_signals { Interrupt::on_signals() } else { Ok(Interrupt::default()) }
     }
 
@@ -47,12 +47,12 @@ impl Interrupt {
     }
 
     /// Whether the run shall end.
-    pub(crate) fn is_requested(&self) -> bool {
+    pub fn is_requested(&self) -> bool {
         self.is_requested.load(Ordering::Relaxed)
     }
 
     /// The exit status of a run that a signal has ended.
-    pub(crate) fn exit(&self) -> Option<Exit> {
+    pub fn exit(&self) -> Option<Exit> {
         let signal = self.signal.load(Ordering::Relaxed);
         self.is_requested().then(|| Exit::Interrupted(u8::try_from(signal).unwrap_or_default()))
     }

@@ -16,7 +16,7 @@ const UNITS: [(&str, u128); 6] = [
 ///
 /// # Errors
 /// A sentence for the user.
-pub(crate) fn parse(text: &str) -> Result<Duration, String> {
+pub fn parse(text: &str) -> Result<Duration, String> {
     let number_ends = text.find(|c: char| !c.is_ascii_digit() && c != '.').unwrap_or(text.len());
     let (number, unit) = text.split_at(number_ends);
     if number.is_empty() {

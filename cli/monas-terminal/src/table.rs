@@ -9,14 +9,14 @@ use unicode_width::UnicodeWidthStr;
 const GAP: usize = 2;
 
 /// A table whose columns are right-aligned from column `first_number` on.
-pub(crate) struct Table {
+pub struct Table {
     header: Vec<String>,
     rows: Vec<Vec<String>>,
     first_number: usize,
 }
 
 /// A table whose columns are right-aligned from column `first_number` on.
-pub(crate) fn of_numbers<Row: IntoIterator<Item = String>>(
+pub fn of_numbers<Row: IntoIterator<Item = String>>(
     header: impl IntoIterator<Item: Into<String>>,
     first_number: usize,
     rows: impl IntoIterator<Item = Row>,
@@ -26,20 +26,22 @@ pub(crate) fn of_numbers<Row: IntoIterator<Item = String>>(
 }
 
 /// The cells of a row, each in one or more lines.
-pub(crate) type FoldedRow = Vec<Vec<String>>;
+pub type FoldedRow = Vec<Vec<String>>;
 
 /// A table in a given width.
-pub(crate) struct FoldedTable {
+pub struct FoldedTable {
     /// The width of each column.
-    pub(crate) widths: Vec<usize>,
-    pub(crate) header: FoldedRow,
-    pub(crate) rows: Vec<FoldedRow>,
+    pub widths: Vec<usize>,
+    /// The names of the columns.
+    pub header: FoldedRow,
+    /// The rows below the header.
+    pub rows: Vec<FoldedRow>,
 }
 
 impl Table {
     /// Folds cells until the table has at most this width, with a gap between columns. It stays
     /// wider if single words are too long.
-    pub(crate) fn folded(&self, limit: usize, gap: usize) -> FoldedTable {
+    pub fn folded(&self, limit: usize, gap: usize) -> FoldedTable {
         let all = || self.rows.iter().chain([&self.header]);
         let widest = |column: usize, width: &dyn Fn(&str) -> usize| {
             all().filter_map(|row| row.get(column)).map(|cell| width(cell)).max().unwrap_or_default()
@@ -106,7 +108,7 @@ impl fmt::Display for Table {
 
 /// The columns of the terminal on which results are written: `COLUMNS`, or what the terminal says;
 /// none without a terminal.
-pub(crate) fn columns() -> Option<usize> {
+pub fn columns() -> Option<usize> {
     let asked = std::env::var("COLUMNS").ok().and_then(|columns| columns.parse().ok());
     let own = || ratatui::crossterm::terminal::size().ok().filter(|_| io::stdout().is_terminal());
     asked.or_else(|| own().map(|(columns, _)| usize::from(columns)))
@@ -154,7 +156,7 @@ fn folded(text: &str, width: usize) -> Vec<String> {
 }
 
 /// The short name of a state, by its path without the root; empty for none.
-pub(crate) fn state_name(path: &str) -> String {
+pub fn state_name(path: &str) -> String {
     if path.is_empty() { String::new() } else { yase::StateNames::brief(&format!("/{path}")) }
 }
 

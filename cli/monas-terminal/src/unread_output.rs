@@ -3,7 +3,7 @@
 use std::io::{self, ErrorKind, Write};
 
 /// Drops what is written after the reader has closed the stream.
-pub(crate) struct UnreadOutput<'a>(pub(crate) &'a mut dyn Write);
+pub struct UnreadOutput<'a>(pub &'a mut dyn Write);
 
 /// A closed pipe takes everything; other errors remain.
 fn unread<T>(done: io::Result<T>, taken: T) -> io::Result<T> {

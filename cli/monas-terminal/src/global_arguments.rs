@@ -3,12 +3,12 @@
 use clap::{ArgAction, Args, ColorChoice};
 use tracing_subscriber::filter::LevelFilter;
 
-use super::CommandOutput;
+use crate::CommandOutput;
 
 /// Options for output, which stand before or behind the command.
 #[derive(Args, Debug)]
 #[command(next_help_heading = "Global options")]
-pub(crate) struct GlobalArguments {
+pub struct GlobalArguments {
     /// Print results and errors only: no warnings, no progress, no remarks.
     #[arg(short, long, global = true, conflicts_with = "verbose", display_order = 1000)]
     quiet: bool,
@@ -30,7 +30,7 @@ pub(crate) struct GlobalArguments {
 
 impl GlobalArguments {
     /// Applies the options to the output of the command.
-    pub(crate) fn apply(&self, console: &mut CommandOutput<'_>) {
+    pub fn apply(&self, console: &mut CommandOutput<'_>) {
         console.quiet = self.quiet;
         console.paint(self.color);
         let level = match (self.quiet, self.verbose) {
@@ -47,7 +47,7 @@ impl GlobalArguments {
 
 /// The colours that a command line asks for, although it may be invalid: errors of the command line
 /// are coloured, too.
-pub(crate) fn wanted_colours(arguments: &[String]) -> ColorChoice {
+pub fn wanted_colours(arguments: &[String]) -> ColorChoice {
     let mut values = arguments.iter().enumerate().filter_map(|(index, argument)| match argument.as_str() {
         "--color" => arguments.get(index + 1).map(String::as_str),
         other => other.strip_prefix("--color="),

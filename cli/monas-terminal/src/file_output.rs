@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
-use super::{CommandFailure, CommandOutput, Exit, Format};
+use crate::{CommandFailure, CommandOutput, Exit, Format};
 
 /// Writes a text to a file, or to standard output if no file is given.
-pub(crate) fn write_text(
+pub fn write_text(
     output: Option<&Path>,
     text: &str,
     format: Format,

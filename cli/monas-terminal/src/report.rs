@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use unicode_width::UnicodeWidthChar;
 use yase::{Diagnostic, Severity};
 
-use super::{CommandOutput, Format};
+use crate::{CommandOutput, Format};
 
 /// The columns that are shown of a source line with more characters: it is cut around the finding.
 const WINDOW: usize = 100;
@@ -19,11 +19,7 @@ const BEFORE: usize = 30;
 const MESSAGE: usize = 1000;
 
 /// Writes diagnostics on standard error, in the given order.
-pub(crate) fn write(
-    console: &mut CommandOutput<'_>,
-    format: Format,
-    diagnostics: &[Diagnostic],
-) -> io::Result<()> {
+pub fn write(console: &mut CommandOutput<'_>, format: Format, diagnostics: &[Diagnostic]) -> io::Result<()> {
     let is_shown = |diagnostic: &&Diagnostic| diagnostic.is_error() || !console.quiet;
     let diagnostics: Vec<&Diagnostic> = diagnostics.iter().filter(is_shown).collect();
     for diagnostic in &diagnostics {
@@ -42,7 +38,7 @@ pub(crate) fn write(
 }
 
 /// Writes a remark about what the command does, on standard error.
-pub(crate) fn note(console: &mut CommandOutput<'_>, format: Format, message: &str) -> io::Result<()> {
+pub fn note(console: &mut CommandOutput<'_>, format: Format, message: &str) -> io::Result<()> {
     match format {
         Format::Text => writeln!(console.remarks(), "note: {message}"),
         Format::Json => {
@@ -69,7 +65,8 @@ fn count(diagnostics: &[&Diagnostic]) -> String {
         .join(", ")
 }
 
-pub(crate) fn object(diagnostic: &Diagnostic) -> Value {
+/// A diagnostic as a JSON object: code, severity, message, file, line, column and hint.
+pub fn object(diagnostic: &Diagnostic) -> Value {
     let position = diagnostic.position();
     json!({
         "code": diagnostic.code,

@@ -8,11 +8,11 @@ use serde_json::json;
 use yase::Diagnostic;
 use yase::diagnostic::nearest;
 
-use super::{CommandOutput, Exit, Format, report};
+use crate::{CommandOutput, Exit, Format, report};
 
 /// A failure of a command, with the format of its report.
 #[derive(Debug)]
-pub(crate) enum CommandFailure {
+pub enum CommandFailure {
     /// A configuration, a model or another text of the user is invalid.
     Invalid(Format, Vec<Diagnostic>),
     /// The command line is contradictory or names something that does not exist.
@@ -27,13 +27,13 @@ pub(crate) enum CommandFailure {
 
 impl CommandFailure {
     /// An operation failed with this error.
-    pub(crate) fn failed(format: Format, error: impl Display) -> CommandFailure {
+    pub fn failed(format: Format, error: impl Display) -> CommandFailure {
         CommandFailure::Failed(format, error.to_string())
     }
 
     /// A run did not start: errors in a configuration are invalid input, a link that does not open
     /// is an unreachable peer.
-    pub(crate) fn not_started(format: Format, error: monas::Error) -> CommandFailure {
+    pub fn not_started(format: Format, error: monas::Error) -> CommandFailure {
         match error.kind() {
             ErrorKind::Invalid => CommandFailure::Invalid(format, error.diagnostics().to_vec()),
             ErrorKind::Link => CommandFailure::Unreachable(format, error.to_string()),
@@ -42,7 +42,7 @@ impl CommandFailure {
     }
 
     /// A name that does not exist in a tape or a configuration; lists the known ones.
-    pub(crate) fn unknown_name<'a>(
+    pub fn unknown_name<'a>(
         place: &str,
         what: &str,
         name: &str,
@@ -59,7 +59,7 @@ impl CommandFailure {
     }
 
     /// Writes it on standard error, and returns the exit status.
-    pub(crate) fn report(self, console: &mut CommandOutput<'_>) -> Exit {
+    pub fn report(self, console: &mut CommandOutput<'_>) -> Exit {
         // If standard error cannot be written, only the exit code remains.
         let (_, exit) = match self {
             CommandFailure::Invalid(format, diagnostics) => {
@@ -84,17 +84,8 @@ impl CommandFailure {
 }
 
 /// Maps an error of a library to a failure, for `map_err`.
-pub(crate) fn failed<E: Display>(format: Format) -> impl Fn(E) -> CommandFailure {
+pub fn failed<E: Display>(format: Format) -> impl Fn(E) -> CommandFailure {
     move |error| CommandFailure::failed(format, error)
-}
-
-/// Maps an error of a project to a failure, for `map_err`.
-pub(crate) fn project_failure(format: Format) -> impl Fn(monas_project::Error) -> CommandFailure {
-    move |error| match error.kind() {
-        monas_project::ErrorKind::Argument => CommandFailure::Usage(error.to_string()),
-        monas_project::ErrorKind::Invalid => CommandFailure::Invalid(format, error.diagnostics().to_vec()),
-        _ => CommandFailure::failed(format, error),
-    }
 }
 
 impl From<io::Error> for CommandFailure {

@@ -4,10 +4,10 @@ use std::io::{self, IsTerminal, Write};
 
 use unicode_width::UnicodeWidthStr;
 
-use super::{CommandOutput, table};
+use crate::{CommandOutput, table};
 
 /// Shows lines in place of the lines shown before; elsewhere than on a terminal, below them.
-pub(crate) struct Repaint {
+pub struct Repaint {
     /// The width of the terminal, if there is one.
     columns: Option<usize>,
     /// How many rows of the terminal are shown.
@@ -16,25 +16,23 @@ pub(crate) struct Repaint {
 
 impl Repaint {
     /// On the terminal of the command's results.
-    pub(crate) fn of_console(console: &CommandOutput<'_>) -> Repaint {
+    pub fn of_console(console: &CommandOutput<'_>) -> Repaint {
         let is_terminal = console.bars.is_some() && io::stdout().is_terminal();
         Repaint { columns: is_terminal.then(table::columns).flatten(), rows: 0 }
     }
 
     /// On the terminal of the command's progress.
-    #[cfg(feature = "soccer")]
-    pub(crate) fn of_progress(console: &CommandOutput<'_>) -> Repaint {
+    pub fn of_progress(console: &CommandOutput<'_>) -> Repaint {
         Repaint { columns: console.bars.as_ref().and_then(|_| table::columns()), rows: 0 }
     }
 
     /// Whether lines replace those shown before.
-    #[cfg(feature = "soccer")]
-    pub(crate) const fn replaces(&self) -> bool {
+    pub const fn replaces(&self) -> bool {
         self.columns.is_some()
     }
 
     /// Shows these lines.
-    pub(crate) fn show(&mut self, lines: &[String], out: &mut dyn Write) -> io::Result<()> {
+    pub fn show(&mut self, lines: &[String], out: &mut dyn Write) -> io::Result<()> {
         if self.rows > 0 {
             // To the begin of the first row, and erase from there on.
             write!(out, "\x1b[{}F\x1b[J", self.rows)?;

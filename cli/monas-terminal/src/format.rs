@@ -2,16 +2,17 @@
 
 use clap::{Args, ValueEnum};
 
+/// The option `--format` of a command.
 #[derive(Args, Clone, Copy, Debug)]
-pub(crate) struct FormatArgument {
+pub struct FormatArgument {
     /// For people, or for programs: one JSON object per line.
     #[arg(long = "format", value_name = "FORMAT", default_value = "text")]
-    pub(crate) value: Format,
+    pub value: Format,
 }
 
 /// The format of results and diagnostics.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, ValueEnum)]
-pub(crate) enum Format {
+pub enum Format {
     /// For people.
     Text,
     /// For programs.

@@ -1,17 +1,17 @@
 //! Times, sizes and counts as text.
 
 /// A time in seconds, written in milliseconds; `-` if it was not measured.
-pub(crate) fn millis(seconds: Option<f64>) -> String {
+pub fn millis(seconds: Option<f64>) -> String {
     seconds.map_or_else(|| "-".into(), |seconds| format!("{:.3} ms", seconds * 1e3))
 }
 
 /// Nanoseconds as seconds.
-pub(crate) fn seconds(nanos: u64) -> f64 {
+pub fn seconds(nanos: u64) -> f64 {
     nanos as f64 / 1e9
 }
 
 /// A size of memory; `-` if it was not measured.
-pub(crate) fn memory(held: Option<u64>) -> String {
+pub fn memory(held: Option<u64>) -> String {
     match held {
         None => "-".into(),
         Some(bytes) if bytes < 10 * 1024 => format!("{bytes} B"),
@@ -21,7 +21,7 @@ pub(crate) fn memory(held: Option<u64>) -> String {
 }
 
 /// The size of a file: `12.3 MB`.
-pub(crate) fn size(bytes: u64) -> String {
+pub fn size(bytes: u64) -> String {
     match bytes {
         0..1_000 => format!("{bytes} B"),
         1_000..1_000_000 => format!("{:.1} kB", bytes as f64 / 1e3),
@@ -31,7 +31,7 @@ pub(crate) fn size(bytes: u64) -> String {
 }
 
 /// Parses a size as [`size`] writes it: `500MB`.
-pub(crate) fn parse_size(text: &str) -> Result<u64, String> {
+pub fn parse_size(text: &str) -> Result<u64, String> {
     let number_ends = text.find(|c: char| !c.is_ascii_digit()).unwrap_or(text.len());
     let (number, unit) = text.split_at(number_ends);
     let worth = match unit.trim() {
@@ -46,13 +46,13 @@ pub(crate) fn parse_size(text: &str) -> Result<u64, String> {
 }
 
 /// `1 message`, `12,345 messages`.
-pub(crate) fn counted(count: u64, word: &str) -> String {
+pub fn counted(count: u64, word: &str) -> String {
     let plural = if count == 1 { "" } else { "s" };
     format!("{} {word}{plural}", grouped(count))
 }
 
 /// A number with a comma between thousands.
-pub(crate) fn grouped(count: u64) -> String {
+pub fn grouped(count: u64) -> String {
     let digits = count.to_string();
     let mut text = String::new();
     for (place, digit) in digits.chars().enumerate() {

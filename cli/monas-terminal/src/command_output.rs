@@ -11,30 +11,30 @@ use indicatif::MultiProgress;
 use super::ProcessLog;
 
 /// Standard output and standard error of a command, and their capabilities.
-pub(crate) struct CommandOutput<'a> {
+pub struct CommandOutput<'a> {
     /// Results.
-    pub(crate) out: &'a mut dyn Write,
+    pub out: &'a mut dyn Write,
     /// Diagnostics and progress.
-    pub(crate) err: &'a mut dyn Write,
+    pub err: &'a mut dyn Write,
     /// Whether results may be coloured.
-    pub(crate) colour_out: bool,
+    pub colour_out: bool,
     /// Whether diagnostics may be coloured.
-    pub(crate) colour_err: bool,
+    pub colour_err: bool,
     /// Progress bars, if standard error is a terminal.
-    pub(crate) bars: Option<MultiProgress>,
+    pub bars: Option<MultiProgress>,
     /// Whether the command handles signals.
-    pub(crate) catches_signals: bool,
+    pub catches_signals: bool,
     /// The log of this process, if the command owns it.
-    pub(crate) log: Option<ProcessLog>,
+    pub log: Option<ProcessLog>,
     /// Whether only results and errors are printed.
-    pub(crate) quiet: bool,
+    pub quiet: bool,
     /// The codes of the printed diagnostics, if standard error is a terminal.
-    pub(crate) codes: Option<Rc<RefCell<BTreeSet<&'static str>>>>,
+    pub codes: Option<Rc<RefCell<BTreeSet<&'static str>>>>,
 }
 
 impl<'a> CommandOutput<'a> {
     /// Two streams without a terminal.
-    pub(crate) fn plain(out: &'a mut dyn Write, err: &'a mut dyn Write) -> CommandOutput<'a> {
+    pub fn plain(out: &'a mut dyn Write, err: &'a mut dyn Write) -> CommandOutput<'a> {
         CommandOutput {
             out,
             err,
@@ -49,7 +49,7 @@ impl<'a> CommandOutput<'a> {
     }
 
     /// Standard error, for what is neither a result nor a diagnostic; nothing with `--quiet`.
-    pub(crate) fn remarks(&mut self) -> Box<dyn Write + '_> {
+    pub fn remarks(&mut self) -> Box<dyn Write + '_> {
         match self.quiet {
             true => Box::new(io::sink()),
             false => Box::new(&mut *self.err),
@@ -57,7 +57,7 @@ impl<'a> CommandOutput<'a> {
     }
 
     /// Uses colours or not; `Auto` keeps what was found out about the streams.
-    pub(crate) fn paint(&mut self, colours: ColorChoice) {
+    pub fn paint(&mut self, colours: ColorChoice) {
         if colours != ColorChoice::Auto {
             (self.colour_out, self.colour_err) =
                 (colours == ColorChoice::Always, colours == ColorChoice::Always);
@@ -65,7 +65,7 @@ impl<'a> CommandOutput<'a> {
     }
 
     /// Names the command that explains the codes of the printed diagnostics.
-    pub(crate) fn name_explanations(&mut self) -> io::Result<()> {
+    pub fn name_explanations(&mut self) -> io::Result<()> {
         let codes: Vec<&str> = self.codes.iter().flat_map(|codes| codes.take()).collect();
         match codes.as_slice() {
             [] => Ok(()),
