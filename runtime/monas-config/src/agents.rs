@@ -74,6 +74,20 @@ pub fn read(source: &Arc<Source>, path: &Path, registry: &Registry) -> (HostSetu
     assembled(&elements, path, registry, diagnostics)
 }
 
+/// As [`read`], for agents of a run: a module that the registry lacks is an error and is not
+/// loaded, since loading executes code.
+pub fn read_without_loading(
+    source: &Arc<Source>,
+    path: &Path,
+    registry: &Registry,
+) -> (HostSetup, Vec<Diagnostic>) {
+    let (elements, mut diagnostics) = Grammar::agents().read(source);
+    let loading = ModuleLoading::Refused;
+    let setup = assemble_with(&elements, path, registry, Surroundings::Own, loading, &mut diagnostics);
+    sort(&mut diagnostics);
+    (setup, diagnostics)
+}
+
 fn assembled(
     elements: &[Element],
     path: &Path,
@@ -94,9 +108,27 @@ pub fn assemble(
     surroundings: Surroundings,
     diagnostics: &mut Vec<Diagnostic>,
 ) -> HostSetup {
+    assemble_with(elements, path, registry, surroundings, ModuleLoading::Allowed, diagnostics)
+}
+
+/// Whether modules that the registry lacks are loaded.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) enum ModuleLoading {
+    Allowed,
+    Refused,
+}
+
+fn assemble_with(
+    elements: &[Element],
+    path: &Path,
+    registry: &Registry,
+    surroundings: Surroundings,
+    loading: ModuleLoading,
+    diagnostics: &mut Vec<Diagnostic>,
+) -> HostSetup {
     let grammar = Grammar::agents();
     let (registry, setup) = (registry.clone(), HostSetup::default());
-    let mut reader = AgentReader { path, registry, grammar: &grammar, diagnostics, setup };
+    let mut reader = AgentReader { path, registry, loading, grammar: &grammar, diagnostics, setup };
     reader.setup.source = elements.first().map(|element| element.source().clone());
     // Modules are read first: their activities are known to all elements of the file.
     modules::read(&mut reader, elements);
@@ -113,6 +145,7 @@ pub(crate) struct AgentReader<'a> {
     pub(crate) path: &'a Path,
     /// Including the modules of the file.
     pub(crate) registry: Registry,
+    pub(crate) loading: ModuleLoading,
     pub(crate) grammar: &'a Grammar,
     pub(crate) diagnostics: &'a mut Vec<Diagnostic>,
     pub(crate) setup: HostSetup,

@@ -131,7 +131,7 @@ pub mod xml;
 mod xml_config;
 mod xml_editor;
 
-pub use agents::{HostSetup, assemble, load, load_with, read};
+pub use agents::{HostSetup, assemble, load, load_with, read, read_without_loading};
 pub use configuration_bundle::ConfigurationBundle;
 pub use element::{Attribute, Element, Layer, is_written};
 pub use grammar::{AttributeRule, ElementRule, Grammar, Identity, Kind};

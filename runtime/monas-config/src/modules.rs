@@ -4,7 +4,7 @@ use std::path::Path;
 
 use yase::Diagnostic;
 
-use super::agents::{AgentReader, is_enabled};
+use super::agents::{AgentReader, ModuleLoading, is_enabled};
 use super::element::Element;
 use super::grammar::Grammar;
 use super::paths;
@@ -58,6 +58,13 @@ fn module(reader: &mut AgentReader<'_>, element: &Element) -> Option<Module> {
     };
     if let Some(known) = reader.registry.modules().find(|known| is_same(known.file(), &found)) {
         return Some(known.clone());
+    }
+    if reader.loading == ModuleLoading::Refused {
+        let message = "the text names a module that the run has not loaded";
+        let hint = "load it first: `monas module load FILE`";
+        let diagnostic = element.error("E0358", element.text_span(), message.to_owned());
+        reader.diagnostics.push(diagnostic.with_hint(hint));
+        return None;
     }
     let placed = |wrong: Diagnostic| {
         let placed = element.error(wrong.code, element.text_span(), wrong.message);

@@ -204,7 +204,6 @@ impl AgentShared {
         self.pauses.store(false, Ordering::SeqCst);
         self.for_each_thread(|part| part.is_over.store(false, Ordering::SeqCst));
         self.has_stopped.store(false, Ordering::SeqCst);
-        self.safe_state.store(false, Ordering::SeqCst);
     }
 
     pub(crate) fn set_paused(&self, pauses: bool) {
@@ -230,9 +229,12 @@ impl AgentShared {
 
     /// Whether it will not act again by itself.
     pub(crate) fn is_over(&self) -> bool {
-        let mut over = true;
-        self.for_each_thread(|part| over &= part.is_over.load(Ordering::SeqCst));
-        over || self.has_stopped() || self.is_stuck()
+        let SharedThreads { list, charts } = locked(&self.parts).clone();
+        let is_over = |part: &Arc<ThreadShared>| part.is_over.load(Ordering::SeqCst);
+        // A cycle of a list that is stuck is cut off; a call of a chart may take long.
+        let is_cut_off = |part: &Arc<ThreadShared>| part.watchdog.is_abandoned();
+        self.has_stopped()
+            || list.iter().all(|list| is_over(list) || is_cut_off(list)) && charts.iter().all(is_over)
     }
 
     pub(crate) fn is_stuck(&self) -> bool {

@@ -16,6 +16,10 @@ use joint_bridge::JointBridge;
 /// The identity of a message: its publisher and sequence number.
 type MessageId = (PublisherId, u64);
 
+/// The remark on the start of an agent whose body is in its safe state.
+pub(crate) const SAFE_STATE: &str =
+    "the body is in its safe state and ignores commands until the end of the run";
+
 /// A body and its connections to the hub of its host.
 pub(crate) struct BodyBridge {
     robot: Box<dyn Robot>,
@@ -109,6 +113,11 @@ impl BodyBridge {
         };
         self.robot.act(now, actuators.message).map_err(failed)?;
         Ok(Some(actuators.header.published))
+    }
+
+    /// Whether the agents' commands are ignored.
+    pub(crate) const fn is_safe_state(&self) -> bool {
+        self.is_safe_state
     }
 
     /// Enters the safe state: the agents' commands are ignored from now on.

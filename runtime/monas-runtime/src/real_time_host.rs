@@ -14,6 +14,7 @@ use super::agent_entry;
 use super::agent_factory::{AgentFactory, HostContext, PreparedAgent};
 use super::agent_shared::{AgentShared, ThreadShared};
 use super::agent_update::{AgentCommand, AgentStatus, AgentUpdate, ChangeRef, STOPPED_BY_REQUEST};
+use super::body::SAFE_STATE;
 use super::chart_thread::{ChartThread, PoolDriver};
 use super::clock::RunClock;
 use super::cycle_recorder::CycleRecorder;
@@ -518,7 +519,12 @@ impl AgentControl for AgentThreads {
                 AgentCommand::Step | AgentCommand::Policy(_) => {}
             }
         }
-        worker.shared.apply(orders, PATIENCE)
+        let starts = of_agent && orders.commands.iter().any(|command| matches!(command, AgentCommand::Start));
+        let mut said = worker.shared.apply(orders, PATIENCE)?;
+        if starts && self.safe_state.load(Ordering::SeqCst) {
+            said.push(SAFE_STATE.to_owned());
+        }
+        Ok(said)
     }
 
     fn launch(&mut self, member: PreparedAgent, asked: Option<&ChangeRef>) -> Result<(), String> {

@@ -1,6 +1,7 @@
 //! A run as seen from outside: its hubs, its time, and the entry point for external publications.
 
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, TrySendError, sync_channel};
 use std::time::Duration;
 
@@ -39,7 +40,7 @@ enum RunTime {
 /// Requests to a simulated run, and why it does not answer them.
 #[derive(Clone)]
 struct ExternalRequests {
-    sender: SyncSender<ExternalRequest>,
+    sender: SyncSender<QueuedRequest>,
     watched: Arc<WatchedRun>,
 }
 
@@ -50,10 +51,16 @@ pub(crate) enum ExternalRequest {
     Look { chart: Option<ChartChoice>, answer: SyncSender<Vec<HostStatus>> },
 }
 
+/// A request in the queue of a run, claimed once: by the run, or by a requester that withdraws it.
+struct QueuedRequest {
+    request: ExternalRequest,
+    is_claimed: Arc<AtomicBool>,
+}
+
 /// The external requests to a simulated run.
 pub(crate) struct RequestQueue {
-    sender: SyncSender<ExternalRequest>,
-    waiting: Receiver<ExternalRequest>,
+    sender: SyncSender<QueuedRequest>,
+    waiting: Receiver<QueuedRequest>,
 }
 
 impl RequestQueue {
@@ -62,13 +69,15 @@ impl RequestQueue {
         RequestQueue { sender, waiting }
     }
 
-    fn sender(&self) -> SyncSender<ExternalRequest> {
+    fn sender(&self) -> SyncSender<QueuedRequest> {
         self.sender.clone()
     }
 
-    /// Takes the oldest request.
+    /// Takes the oldest request that was not withdrawn.
     pub(crate) fn next(&self) -> Option<ExternalRequest> {
-        self.waiting.try_recv().ok()
+        let mut waiting = self.waiting.try_iter();
+        let taken = waiting.find(|queued| !queued.is_claimed.swap(true, Ordering::SeqCst))?;
+        Some(taken.request)
     }
 }
 
@@ -271,14 +280,28 @@ fn stuck_host(agent: AgentEntry) -> HostStatus {
 }
 
 impl ExternalRequests {
-    /// Submits a request and waits for its reply.
+    /// Submits a request and waits for its reply. Withdraws the request if the run does not take it.
     fn submit<T>(&self, what: impl FnOnce(SyncSender<T>) -> ExternalRequest) -> Result<T, String> {
+        self.submit_within(PATIENCE, what)
+    }
+
+    fn submit_within<T>(
+        &self,
+        patience: Duration,
+        what: impl FnOnce(SyncSender<T>) -> ExternalRequest,
+    ) -> Result<T, String> {
         let (answer, answered) = sync_channel(1);
-        self.sender.try_send(what(answer)).map_err(|error| match error {
+        let is_claimed = Arc::new(AtomicBool::new(false));
+        let queued = QueuedRequest { request: what(answer), is_claimed: is_claimed.clone() };
+        self.sender.try_send(queued).map_err(|error| match error {
             TrySendError::Full(_) => format!("{WAITING} messages from outside wait already"),
             TrySendError::Disconnected(_) => "the run has ended".to_owned(),
         })?;
-        answered.recv_timeout(PATIENCE).map_err(|error| match (error, self.watched.stalled()) {
+        let mut reply = answered.recv_timeout(patience);
+        if matches!(reply, Err(RecvTimeoutError::Timeout)) && is_claimed.swap(true, Ordering::SeqCst) {
+            reply = answered.recv_timeout(patience);
+        }
+        reply.map_err(|error| match (error, self.watched.stalled()) {
             (RecvTimeoutError::Timeout, Some(call)) => format!("the run stands still: {call}"),
             (RecvTimeoutError::Timeout, None) => "the run stands still and takes nothing".to_owned(),
             (RecvTimeoutError::Disconnected, _) => "the run has ended".to_owned(),
@@ -312,5 +335,20 @@ impl monas_link::control::ControlTarget for RunHandle {
 impl std::fmt::Debug for RunHandle {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(f, "Overview({} hubs at {})", self.hubs.len(), self.now())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_request_that_the_run_did_not_take_in_time_is_withdrawn() {
+        let queue = RequestQueue::new();
+        let requests = ExternalRequests { sender: queue.sender(), watched: Arc::default() };
+        let look = |answer| ExternalRequest::Look { chart: None, answer };
+        let error = requests.submit_within(Duration::ZERO, look).map(|views| views.len());
+        assert_eq!(error, Err("the run stands still and takes nothing".to_owned()));
+        assert!(queue.next().is_none());
     }
 }

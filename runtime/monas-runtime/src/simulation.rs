@@ -44,6 +44,8 @@ pub struct Simulation {
     hosting: LogHosts,
     /// Scripted changes of agents, by time and the order in which they were added.
     script: BTreeMap<(Timestamp, usize), (usize, Change)>,
+    /// How many changes have been scheduled.
+    scripted: usize,
     watchdog: StallWatchdog,
     thread: Option<SimulationThread>,
 }
@@ -61,7 +63,19 @@ impl Simulation {
         let hosting = LogHosts::simulated(hubs);
         let (inlet, script) = (RequestQueue::new(), BTreeMap::new());
         let (now, thread) = (Timestamp::ZERO, None);
-        Ok(Simulation { now, shown, world, hosts, links, requests: inlet, hosting, script, watchdog, thread })
+        Ok(Simulation {
+            now,
+            shown,
+            world,
+            hosts,
+            links,
+            requests: inlet,
+            hosting,
+            script,
+            scripted: 0,
+            watchdog,
+            thread,
+        })
     }
 
     /// Sets the simulated time and log hosts of this thread until the guards are dropped.
@@ -136,7 +150,8 @@ impl Simulation {
     /// There is no such host.
     pub fn change_at(&mut self, moment: Timestamp, host: &str, change: Change) -> Result<(), Error> {
         let place = self.place(host)?;
-        self.script.insert((moment.max(self.now), self.script.len()), (place, change));
+        self.script.insert((moment.max(self.now), self.scripted), (place, change));
+        self.scripted += 1;
         Ok(())
     }
 

@@ -273,18 +273,14 @@ impl PlanContext<'_> {
     fn add_agents(&self, is_wanted: impl Fn(&str) -> bool) -> Result<ChangePlan, ChangeRefusal> {
         let file = if self.change.file.is_empty() { "agents.xml" } else { &self.change.file };
         let source = Source::new(file, self.change.text.clone());
-        let (setup, diagnostics) = monas_config::read(&source, Path::new(file), &self.host.registry);
+        let (setup, diagnostics) =
+            monas_config::read_without_loading(&source, Path::new(file), &self.host.registry);
         if diagnostics.iter().any(Diagnostic::is_error) {
             return Err(diagnostics);
         }
         if !setup.links.is_empty() {
             let message = "links are opened at the start of a run and cannot be added later";
             return Err(vec![Diagnostic::error("E0358", 0..0, message).in_source(&source)]);
-        }
-        if setup.modules.iter().any(|module| self.host.registry.module(module.name()).is_none()) {
-            let message = "the text names a module that the run has not loaded";
-            let hint = "load it first: `monas module load FILE`";
-            return Err(vec![Diagnostic::error("E0358", 0..0, message).with_hint(hint).in_source(&source)]);
         }
         if setup.agents.is_empty() {
             return Err(vec![Diagnostic::error("E0358", 0..0, "the text holds no agent").in_source(&source)]);

@@ -10,8 +10,8 @@ use crate::admin::{AgentControl, HostAdmin};
 use crate::agent_entry;
 use crate::agent_factory::{AgentFactory, PreparedAgent};
 use crate::agent_instance::{AgentInstance, PublishedTopics};
-use crate::agent_update::{AgentStatus, AgentUpdate, ChangeRef};
-use crate::body::BodyBridge;
+use crate::agent_update::{AgentCommand, AgentStatus, AgentUpdate, ChangeRef};
+use crate::body::{BodyBridge, SAFE_STATE};
 use crate::clock::{RunClock, SimulatedClock};
 use crate::host_status::HostStatus;
 use crate::links::RunningLink;
@@ -253,7 +253,12 @@ impl AgentControl for SimulatedAgents<'_> {
         let Some(instance) = self.team.instances.iter_mut().find(|known| known.name() == agent) else {
             return Err(vec![format!("`{agent}` is not there")]);
         };
-        let (outcome, said) = instance.apply(orders, self.now)?;
+        let starts = orders.only.is_none()
+            && orders.commands.iter().any(|command| matches!(command, AgentCommand::Start));
+        let (outcome, mut said) = instance.apply(orders, self.now)?;
+        if starts && self.team.body.as_ref().is_some_and(|(body, _)| body.is_safe_state()) {
+            said.push(SAFE_STATE.to_owned());
+        }
         self.team.handle_outcome(outcome, self.now).map_err(|error| vec![error.to_string()])?;
         Ok(said)
     }

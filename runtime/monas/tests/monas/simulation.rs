@@ -5,6 +5,7 @@ use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use crate::kit::{BALL, Ball, NEWS, at, recorder};
+use monas::records::{Action, Change};
 use monas::{
     Agent, Blackboard, BoxError, ChartSettings, ErrorKind, FailurePolicy, HostConfig, Hz, Parameters,
     Progress, Registry, RunHash, Talws, Timestamp, World,
@@ -290,6 +291,11 @@ fn the_safe_state_unloads_the_body_and_ignores_commands() {
     assert_eq!(acts, ["0 act 0.3", "10 act 0.3", "20 act 0"], "a body that cannot sit stands still");
     let stopped = simulation.statistics().agents[1].stopped.clone();
     assert_eq!(stopped.as_deref(), Some("activity `closure` failed in cycle 3: broken leg"));
+    let start = Change { action: Action::StartAgent.into(), agent: "a".into(), ..Change::default() };
+    let started = simulation.change("red-1", start).unwrap();
+    let remarks: Vec<&str> = started.findings.iter().map(|finding| finding.message.as_str()).collect();
+    let expected = "the body is in its safe state and ignores commands until the end of the run";
+    assert_eq!((started.done, remarks), (true, vec![expected]));
 }
 
 #[test]

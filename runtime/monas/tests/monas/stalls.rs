@@ -117,6 +117,26 @@ fn stuck(run: &RunHandle) -> AgentEntry {
     }
 }
 
+#[test]
+fn a_long_call_of_a_chart_does_not_end_the_run() {
+    let (leave, left) = (Arc::new(Barrier::new(2)), channel());
+    let (barrier, sender) = (leave.clone(), left.0);
+    let registry = Registry::empty()
+        .with("Plan", move || {
+            let barrier = barrier.clone();
+            move |_: &mut Blackboard| _ = barrier.wait()
+        })
+        .with("Go", move || StopReporter(sender.clone()));
+    let chart = aseme_models::statechart_of(&Source::new("m.srm", "m = Plan . Go")).0;
+    let agent = Agent::statechart("m", chart).stuck_after(LIMIT);
+    let running = Talws::new().registry(registry).agent(agent).start().unwrap();
+    let run = running.run_handle();
+    stuck(&run);
+    leave.wait();
+    assert_eq!(left.1.recv_timeout(PATIENCE).unwrap(), "execute");
+    running.stop();
+}
+
 /// Two seconds of an agent whose second call waits until it is released, if that is given.
 fn stalled_run(stall: Option<(Arc<Barrier>, Arc<Barrier>)>) -> (Talws, RunHash) {
     let mut calls = 0;

@@ -69,7 +69,17 @@ pub(super) fn execute(
         is_due = pacer.wait(now(&simulation), &interrupt);
     }
     drop((control, alarm));
-    simulation = simulation.stop_within(STOP_LIMIT).map_err(failed)?;
+    if let Some(tape) = &tape {
+        monas_recording::ended(tape, simulation.now())
+            .map_err(|error| CommandFailure::failed(format, error))?;
+    }
+    simulation = match simulation.stop_within(STOP_LIMIT) {
+        Ok(simulation) => simulation,
+        Err(error) => {
+            outputs::finish(tape, format)?;
+            return Err(failed(error));
+        }
+    };
     let (simulated, wall) = (now(&simulation), clock.elapsed());
     let score = announced(&simulation).map(|said| (said.own_score, said.opponent_score));
     let Statistics { agents, .. } = simulation.statistics();

@@ -185,6 +185,38 @@ fn agents_are_added_from_xml_and_toml_and_removed() {
 }
 
 #[test]
+fn a_module_that_the_run_lacks_is_refused_before_its_file_is_read() {
+    let (mut simulation, _) = simulation();
+    // Not a module, which reading it would find out.
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/Cargo.toml");
+    let text = format!("<agents><module>{file}</module></agents>");
+    let changed = ask(&mut simulation, Change { text, ..change(Action::AddAgents, "") });
+    let reason =
+        "the text names a module that the run has not loaded; load it first: `monas module load FILE`";
+    assert_eq!(refused(&changed), ("E0358".into(), reason.into()));
+}
+
+#[test]
+fn changes_scheduled_between_two_advances_are_all_applied() {
+    let (mut simulation, _) = simulation();
+    let mut pause = |moment, agent: &str| {
+        simulation.change_at(at(moment), "local", change(Action::PauseAgent, agent)).unwrap();
+    };
+    pause(150, "one");
+    pause(250, "two");
+    pause(250, "three");
+    let mut asked = simulation.hub("local").unwrap().subscriber(CHANGE.path()).unwrap();
+    simulation.run_until(at(200)).unwrap();
+    simulation.change_at(at(250), "local", change(Action::PauseAgent, "four")).unwrap();
+    simulation.run_until(at(300)).unwrap();
+    let mut agents = Vec::new();
+    while let Some(sample) = asked.next_sample() {
+        agents.extend(sample.downcast::<Change>().map(|change| change.message.agent.clone()));
+    }
+    assert_eq!(agents, ["one", "two", "three", "four"]);
+}
+
+#[test]
 fn an_agent_that_is_added_has_missed_the_signals_before_and_none_after() {
     let (notes, note) = recorder();
     let registry = Registry::empty().with("Note", move || {
