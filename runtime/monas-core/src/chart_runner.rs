@@ -363,7 +363,7 @@ impl ChartRunner {
             self.ticks += 1;
         }
         let stepped = self.step(now);
-        let violations = self.take_violations();
+        let violations = self.take_violations(now);
         driver.record_step(now, &self.host.delivered, &violations);
         let answered = self.handle_violations(&violations, driver.cycle(), now);
         driver.step_ended(self, now);
@@ -376,13 +376,13 @@ impl ChartRunner {
         if !self.monitors.as_mut().is_some_and(|monitors| monitors.check_deadlines(now)) {
             return Ok(());
         }
-        let violations = self.take_violations();
+        let violations = self.take_violations(now);
         driver.record_step(now, &[], &violations);
         self.handle_violations(&violations, driver.cycle(), now)
     }
 
-    fn take_violations(&mut self) -> Vec<PropertyViolation> {
-        self.monitors.as_mut().map(Monitors::take_violations).unwrap_or_default()
+    fn take_violations(&mut self, now: Timestamp) -> Vec<PropertyViolation> {
+        self.monitors.as_mut().map(|monitors| monitors.take_violations(now)).unwrap_or_default()
     }
 
     fn handle_violations(

@@ -12,6 +12,7 @@
 //! violation is reported; any other property is decided.
 
 use std::sync::Arc;
+use std::time::Duration;
 
 use aseme_verify::properties::{AtomicProposition, Monitor, MonitorVerdict, Property, bind, guards};
 use narukom::{Timestamp, TopicSlot};
@@ -69,6 +70,7 @@ struct MonitoredProperty {
     /// By atom: the guard that evaluates the condition.
     guards: Vec<Option<Guard>>,
     acts: bool,
+    violated_at: Option<Timestamp>,
 }
 
 /// Observations of a step.
@@ -169,13 +171,15 @@ impl Monitors {
     }
 
     /// Takes the violations found since the last call. Does not allocate if there are none.
-    pub(crate) fn take_violations(&mut self) -> Vec<PropertyViolation> {
+    pub(crate) fn take_violations(&mut self, now: Timestamp) -> Vec<PropertyViolation> {
         let mut broken = Vec::new();
         for place in self.violated.drain(..) {
             let Some(one) = self.properties.get_mut(place) else { continue };
             let is_lost = one.monitor.verdict() == MonitorVerdict::Lost;
             let property = one.monitor.plan().name().to_owned();
-            broken.push(PropertyViolation { property, is_lost, acts: one.acts && !is_lost });
+            let earlier = one.violated_at.replace(now);
+            let is_repeated = !is_lost && earlier.is_some_and(|earlier| now.since(earlier) < REPETITION);
+            broken.push(PropertyViolation { property, is_lost, is_repeated, acts: one.acts && !is_lost });
             if !is_lost {
                 one.monitor.try_restart();
             }
@@ -189,8 +193,13 @@ pub struct PropertyViolation {
     pub(crate) property: String,
     /// Set if the property can no longer be monitored.
     is_lost: bool,
+    /// Whether it follows another violation of the property within [`REPETITION`].
+    is_repeated: bool,
     acts: bool,
 }
+
+/// A property that is violated again within this time is not logged again.
+const REPETITION: Duration = Duration::from_secs(1);
 
 impl PropertyViolation {
     /// Its form in records.
@@ -202,6 +211,7 @@ impl PropertyViolation {
     fn log_violation(&self, robot: &str, agent: &str, cycle: u64, now: Timestamp) {
         let property = &self.property;
         match self.is_lost {
+            _ if self.is_repeated => {}
             true => {
                 tracing::warn!(%robot, %agent, cycle, %property, "property is no longer monitored at {now}: too many open obligations")
             }
@@ -250,6 +260,7 @@ fn one(
         monitor: Monitor::new(plan),
         guards,
         acts: on_violation == ViolationResponse::Policy,
+        violated_at: None,
     })
 }
 

@@ -297,7 +297,9 @@ fn a_violated_property_is_an_error_with_its_name_the_cycle_and_the_time() {
             simulation.run_until(Timestamp::from_nanos(40_000_000)).unwrap();
         },
     );
-    let line = log.lines().find(|line| line.contains("ERROR")).unwrap().trim_start();
+    let mut errors = log.lines().filter(|line| line.contains("ERROR"));
+    let line = errors.next().unwrap().trim_start();
+    assert_eq!(errors.next(), None);
     let text = "property violated at 0.020000000 s property=it sleeps";
     assert_eq!(line, format!("0.020000 s ERROR [local m #3] {text}"));
 }

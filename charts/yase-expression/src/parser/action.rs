@@ -105,10 +105,11 @@ impl Cursor<'_> {
         let text = self.source(written).trim();
         let message =
             if text.is_empty() { "a delay is missing".into() } else { format!("`{text}` is no delay") };
-        self.refuse(
-            Diagnostic::error("E0119", written, message)
-                .with_hint("write a number with its unit: `100ms`, `1.5s`"),
-        )
+        let hint = match text.starts_with(|first: char| first.is_alphabetic() || first == '_') {
+            true => "write a number with its unit: `100ms`, `1.5s`; names have no value here",
+            false => "write a number with its unit: `100ms`, `1.5s`",
+        };
+        self.refuse(Diagnostic::error("E0119", written, message).with_hint(hint))
     }
 
     /// `TimeoutAction.v.100`, in milliseconds.

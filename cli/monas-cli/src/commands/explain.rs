@@ -1,5 +1,6 @@
 //! `monas explain`: what diagnostic codes mean.
 
+use std::ffi::OsStr;
 use std::io;
 
 use clap::Args;
@@ -17,7 +18,7 @@ const SUGGESTED: usize = 8;
 #[derive(Args, Debug)]
 pub(crate) struct ExplainArguments {
     /// The code of a diagnostic, for example E0205; without it, all codes are listed.
-    #[arg(add = ArgValueCompleter::new(|_: &std::ffi::OsStr| candidates()))]
+    #[arg(add = ArgValueCompleter::new(candidates))]
     code: Option<String>,
 }
 
@@ -60,6 +61,10 @@ fn unknown(code: &str, wanted: &str, explained: &[Explanation]) -> CommandFailur
     CommandFailure::Usage(format!("there is no code `{code}`; {near}`monas explain` lists all"))
 }
 
-fn candidates() -> Vec<CompletionCandidate> {
-    explanations().iter().map(|it| CompletionCandidate::new(it.code).help(Some(it.title.into()))).collect()
+/// The codes that begin with what was typed.
+fn candidates(typed: &OsStr) -> Vec<CompletionCandidate> {
+    let typed = typed.to_string_lossy().to_uppercase();
+    let explained = explanations();
+    let fitting = explained.iter().filter(|it| it.code.starts_with(&typed));
+    fitting.map(|it| CompletionCandidate::new(it.code).help(Some(it.title.into()))).collect()
 }

@@ -175,12 +175,15 @@ pub(crate) fn recorded_hosts(
     configured(recording, &run, format)
 }
 
-/// The charts of a recording, from the recorded configuration and models.
+/// The charts of a recording, from the recorded configuration and models, also if it cannot be
+/// replayed.
 pub(crate) fn recorded_charts(
     recording: &Recording,
     format: Format,
 ) -> Result<Vec<TapeChart>, CommandFailure> {
-    let hosts = recorded_hosts(recording, format)?;
+    let overview = recording.overview().map_err(failed(format))?;
+    let run = description(&overview).map_err(|message| CommandFailure::Failed(format, message))?;
+    let hosts = configured(recording, &run, format)?;
     let of_agent = |host: &HostConfig, agent: &Agent| {
         let of_chart = |(statechart, chart): (&Statechart, u32)| TapeChart {
             host: host.name.clone(),

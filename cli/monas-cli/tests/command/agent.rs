@@ -122,7 +122,7 @@ fn mistakes_are_answered_with_what_would_be_right() {
     fs::write(&snippet, "<agent frequency=\"10\">\n<name>x</name><activity>LedHandlr</activity></agent>")
         .expect("a file");
     let ask = |arguments: &[&str]| ask(folder.path(), &[&["agent"], arguments].concat());
-    let cases: [(&[&str], i32, &str); 8] = [
+    let cases: [(&[&str], i32, &str); 9] = [
         (&["stop", "Light"], 1, "no agent of `local` is named `Light`\n  help: did you mean `Lights`?"),
         (&["start", "Lights"], 1, "`Lights` has not stopped"),
         (&["set", "Lights", "frequency=fast"], 1, "`frequency` is `fast`, expected a number from"),
@@ -132,7 +132,8 @@ fn mistakes_are_answered_with_what_would_be_right() {
             3,
             "extra.xml:2:25: error[E0312]: unknown activity `LedHandlr`\n  help: did you mean `LedHandler`?",
         ),
-        (&["swap", "Mind", "nowhere.srm"], 1, "no generated statechart `nowhere.srm` is registered"),
+        (&["swap", "Mind", "nowhere"], 1, "no generated statechart `nowhere` is registered"),
+        (&["swap", "Mind", "models/golie.srm"], 3, "did you mean `models/goalie.srm`?"),
         (&["list", "Mnd"], 1, "no agent is named `Mnd`; did you mean `Mind`?"),
         (&["save", "there.toml"], 2, "the file must end with .xml"),
     ];

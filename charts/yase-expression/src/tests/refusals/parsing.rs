@@ -185,6 +185,12 @@ pub(crate) const PARSING: Table = &[
         "/StartTimeout(v, 100)",
         &["E0119 <100>: `100` is no delay (write a number with its unit: `100ms`, `1.5s`)"],
     ),
+    (
+        "/StartTimeout(v, patience)",
+        &[
+            "E0119 <patience>: `patience` is no delay (write a number with its unit: `100ms`, `1.5s`; names have no value here)",
+        ],
+    ),
     ("/StartTimeout(v, )", &["E0119 <>: a delay is missing (write a number with its unit: `100ms`, `1.5s`)"]),
     ("/StartTimeout(v, 100ms", &["E0109 <(>: `(` is not closed (add `)`)"]),
     ("/TimeoutAction.v", &["E0119 <>: a delay is expected, not the end (write `TimeoutAction.v.100`)"]),

@@ -1,9 +1,9 @@
 //! `monas agent` subcommands that change an agent.
 
-use std::fs;
 use std::io::Read;
 use std::path::Path;
 
+use monas::config;
 use monas::records::{Action, Change, Changed, Setting};
 use monas_terminal::{CommandFailure, CommandOutput, Exit};
 
@@ -65,9 +65,10 @@ fn requested_change(command: &AgentCommand) -> Result<Option<(Change, &RunSelect
         AgentCommand::Swap { agent, model, chart, states, lossy, dry_run, run } => {
             let (states, accept_losses, dry_run) = (settings(states)?, *lossy, *dry_run);
             let chart = chart.clone().unwrap_or_default();
-            // A name that is not a file may be that of a generated chart.
-            let (text, file) = match Path::new(model).exists() {
-                true => text_of(Path::new(model), run)?,
+            // A name without an extension that is not a file may be that of a generated chart.
+            let path = Path::new(model);
+            let (text, file) = match path.exists() || path.extension().is_some() {
+                true => text_of(path, run)?,
                 false => (String::new(), model.clone()),
             };
             let swap = change_of(Action::SwapModel, agent);
@@ -100,14 +101,15 @@ fn settings(given: &[String]) -> Result<Vec<Setting>, CommandFailure> {
 
 /// The text of a file, or of standard input for `-`, and the file's name.
 fn text_of(file: &Path, run: &RunSelector) -> Result<(String, String), CommandFailure> {
-    let mut text = String::new();
-    let read = match file == Path::new("-") {
-        true => std::io::stdin().read_to_string(&mut text).map(|_| text),
-        false => fs::read_to_string(file),
-    };
-    let failed = |error| CommandFailure::failed(run.format.value, format!("{}: {error}", file.display()));
-    let name = if file == Path::new("-") { "<stdin>".into() } else { file.display().to_string() };
-    Ok((read.map_err(failed)?, name))
+    let format = run.format.value;
+    if file == Path::new("-") {
+        let mut text = String::new();
+        let read = std::io::stdin().read_to_string(&mut text);
+        read.map_err(|error| CommandFailure::failed(format, format!("standard input: {error}")))?;
+        return Ok((text, "<stdin>".into()));
+    }
+    let source = config::read_file(file).map_err(|unread| CommandFailure::Invalid(format, vec![*unread]))?;
+    Ok((source.text.clone(), source.name.clone()))
 }
 
 fn sentence(changed: &Changed, chart: &str, is_dry_run: bool) -> String {
