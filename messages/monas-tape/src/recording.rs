@@ -66,8 +66,31 @@ impl Recording {
             .bytes
             .strip_prefix(MAGIC)
             .ok_or_else(|| Error::damaged("it does not begin as an MCAP file"))?;
-        let (schemas, channels) = (BTreeMap::new(), BTreeMap::new());
-        Ok(RecordingItems { rest: Bytes(rest), chunk: Bytes::default(), schemas, channels })
+        let (schemas, channels, is_finished) = (BTreeMap::new(), BTreeMap::new(), self.is_finished());
+        let rest = Bytes(rest);
+        let mut items = RecordingItems { rest, chunk: Bytes::default(), schemas, channels, is_finished };
+        // A finished tape repeats them, so that messages behind a damaged chunk are known.
+        let mut summary = Bytes(self.summary().unwrap_or_default());
+        while let Some(record) = summary.record() {
+            let learned = match record.kind {
+                SCHEMA => items.learn_schema(record.body),
+                CHANNEL => items.learn_channel(record.body),
+                _ => Ok(()),
+            };
+            if learned.is_err() {
+                break;
+            }
+        }
+        Ok(items)
+    }
+
+    /// The summary section of a finished tape: from the offset that begins the footer, 20 bytes.
+    fn summary(&self) -> Option<&[u8]> {
+        let end = self.bytes.strip_suffix(MAGIC)?;
+        let footer = end.len().checked_sub(20)?;
+        let start = u64::from_le_bytes(*end.get(footer..)?.first_chunk()?);
+        let start = usize::try_from(start).ok().filter(|&start| start >= MAGIC.len())?;
+        end.get(start..footer)
     }
 
     /// Whether the recording was finished, so that nothing is missing at its end.
@@ -209,6 +232,7 @@ pub struct RecordingItems<'a> {
     /// Shared by their channels, so that a small file cannot use much memory.
     schemas: BTreeMap<u16, Arc<Schema>>,
     channels: BTreeMap<u16, Arc<Channel>>,
+    is_finished: bool,
 }
 
 impl<'a> Iterator for RecordingItems<'a> {
@@ -223,9 +247,10 @@ impl<'a> RecordingItems<'a> {
     fn next_content(&mut self) -> Result<Option<RecordingItem<'a>>, Error> {
         while let Some(record) = self.chunk.record().or_else(|| self.rest.record()) {
             match record.kind {
-                CHUNK => self.chunk = records_of(record.body)?,
+                CHUNK if record.is_whole || !self.is_finished => self.chunk = records_of(record.body)?,
                 // A truncated record is the last one of its container: nothing follows it.
-                _ if !record.is_whole => {}
+                _ if !record.is_whole && !self.is_finished => {}
+                _ if !record.is_whole => return Err(Error::damaged("a record is longer than the tape")),
                 SCHEMA => self.learn_schema(record.body)?,
                 CHANNEL => self.learn_channel(record.body)?,
                 MESSAGE => return self.message(&record).map(|message| Some(RecordingItem::Message(message))),

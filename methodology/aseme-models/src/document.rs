@@ -88,6 +88,11 @@ impl SpannedText {
     }
 }
 
+/// Where the last word of a text begins.
+pub(crate) fn last_word(text: &str) -> usize {
+    text.char_indices().rfind(|(_, c)| c.is_whitespace()).map_or(0, |(at, blank)| at + blank.len_utf8())
+}
+
 /// A setting: `key = value`, or `key:` and a block of lines.
 #[derive(Clone, PartialEq, Debug)]
 pub(crate) struct KeyValue<'a> {

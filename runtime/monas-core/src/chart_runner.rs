@@ -359,7 +359,7 @@ impl ChartRunner {
     }
 
     fn step_and_record(&mut self, driver: &mut impl ChartDriver, now: Timestamp) -> Result<(), ChartError> {
-        while self.tick() <= now {
+        while self.tick() <= now && self.tick() < Timestamp::MAX {
             self.ticks += 1;
         }
         let stepped = self.step(now);

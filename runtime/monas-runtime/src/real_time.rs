@@ -127,14 +127,14 @@ impl RealTimeRun {
     fn end(&mut self) -> Statistics {
         self.stopper.stop();
         let agents = self.supervisor.take().map(JoinHandle::join);
-        let agents = agents.map(|agents| {
-            agents.unwrap_or_else(|_| {
-                tracing::error!("the thread of the supervisor has panicked");
-                Vec::new()
-            })
-        });
+        let supervised = match &agents {
+            Some(Err(_)) => Some("the thread of the supervisor has panicked".to_owned()),
+            _ => None,
+        };
+        let agents = agents.and_then(Result::ok);
+        supervised.iter().for_each(|failure| tracing::error!("{failure}"));
         let failure = match self.world.take().map(JoinHandle::join) {
-            None | Some(Ok(Ok(()))) => None,
+            None | Some(Ok(Ok(()))) => supervised,
             Some(Ok(Err(error))) => Some(error.to_string()),
             Some(Err(_)) => Some("the thread of the world has panicked".to_owned()),
         };

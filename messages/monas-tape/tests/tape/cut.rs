@@ -40,6 +40,17 @@ fn damage_inside_a_chunk_is_noticed() {
 }
 
 #[test]
+fn a_record_that_is_longer_than_a_finished_tape_is_damage() {
+    let bytes = recorded(3);
+    // The first record behind the magic number: its kind, then its length.
+    let mut damaged = bytes;
+    damaged[mcap::MAGIC.len() + 1 + 4] ^= 1;
+    let recording = Recording::from_bytes(damaged);
+    let error = recording.messages().unwrap().next().unwrap().unwrap_err();
+    assert_eq!(error.to_string(), "the tape is damaged: a record is longer than the tape");
+}
+
+#[test]
 fn files_that_are_no_tape_are_rejected() {
     for bytes in [&b""[..], b"<match/>", &mcap::MAGIC[..7]] {
         let error = Recording::from_bytes(bytes.to_vec()).messages().unwrap_err();

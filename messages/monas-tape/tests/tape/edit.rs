@@ -73,6 +73,21 @@ fn records_after_damage_are_kept() {
 }
 
 #[test]
+fn messages_behind_a_damaged_first_chunk_have_the_channels_of_the_summary() {
+    let (_folder, path) = folder();
+    let whole = tape(&path("a.mcap"), &["one"], 60);
+    let mut bytes = std::fs::read(path("a.mcap")).unwrap();
+    let message = whole.messages().unwrap().next().unwrap().unwrap();
+    let place = bytes.windows(message.bytes.len()).position(|window| window == message.bytes).unwrap();
+    bytes[place + 4] ^= 0xff;
+    std::fs::write(path("a.mcap"), bytes).unwrap();
+    let recovery = recover(path("a.mcap"), path("a.mcap")).unwrap();
+    assert_eq!(recovery.damages, ["the tape is damaged: the checksum of a chunk is wrong"]);
+    let (kept, all) = (lines(&Recording::open(path("a.mcap")).unwrap()), lines(&whole));
+    assert!(kept.len() < all.len() && kept[..] == all[all.len() - kept.len()..]);
+}
+
+#[test]
 fn a_part_begins_with_the_states_that_hold() {
     let (_folder, path) = folder();
     let whole = tape(&path("a.mcap"), &["one"], 5);

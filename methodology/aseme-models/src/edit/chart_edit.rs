@@ -11,7 +11,7 @@ use super::{
     EditRefusal, ModelEdit, TextEdit, insertion, line_below, line_break, line_end, on_one_line, replacement,
     without_lines,
 };
-use crate::document::{Item, ItemDocument, Line, SpannedText, value_text};
+use crate::document::{Item, ItemDocument, Line, SpannedText, last_word, value_text};
 use crate::iac::{
     Iac, IacNode, KINDS, NODE_KEYS, NodePaths, TransitionLine, from_text, name_of, name_text, node_setting,
     transition_line,
@@ -170,7 +170,7 @@ impl<'a> ChartText<'a> {
         let node = self.node(number)?;
         let name = on_one_line(name, "a name")?;
         let (content, old) = (&self.nodes[node].content, &self.chart.nodes[node]);
-        let split = content.text.rfind(char::is_whitespace).map_or(0, |at| at + 1);
+        let split = last_word(&content.text);
         let written = content.part(0..split);
         let mut edits = vec![match (name.is_empty(), written.text.is_empty()) {
             (true, _) if matches!(old.kind.as_str(), "OR" | "AND" | "BASIC") => {
@@ -195,7 +195,7 @@ impl<'a> ChartText<'a> {
         let value = value.map(|value| value.split_whitespace().collect::<Vec<_>>().join(" "));
         if key == "kind" {
             let kind = known_kind(value.as_deref().unwrap_or_default())?;
-            let split = lines.content.text.rfind(char::is_whitespace).map_or(0, |at| at + 1);
+            let split = last_word(&lines.content.text);
             let edits = vec![replacement(lines.content.part(split..lines.content.text.len()).span, kind)];
             return Ok(self.with_paths_kept(edits));
         }

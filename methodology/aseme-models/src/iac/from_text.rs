@@ -12,7 +12,9 @@ use super::from_xmi::too_deep;
 use super::path::{NodePaths, name_of};
 use super::to_text::label_name;
 use super::{ChartKind, Iac, IacNode, IacTransition, MAX_LEVELS, Variable, lint, without_null};
-use crate::document::{Item, ItemDocument, KeyValue, Line, Reference, SpannedText, list, settings, unquoted};
+use crate::document::{
+    Item, ItemDocument, KeyValue, Line, Reference, SpannedText, last_word, list, settings, unquoted,
+};
 use aseme::layout::{self, BENDS_KEY};
 use aseme::srm::constant_value;
 use aseme::text::outside_quotes;
@@ -206,7 +208,7 @@ impl Reader {
     /// `name TYPE`, or a type alone.
     fn node(&mut self, line: &Line, parent: Option<usize>) -> Option<usize> {
         let content = &line.content;
-        let split = content.text.rfind(char::is_whitespace).map_or(0, |at| at + 1);
+        let split = last_word(&content.text);
         let kind = content.text[split..].to_owned();
         let is_kind = !kind.is_empty() && kind.bytes().all(|byte| byte.is_ascii_uppercase() || byte == b'_');
         if !is_kind {
@@ -372,11 +374,11 @@ impl Reader {
         let refinement = &mut transition.refinement;
         let mut wrong = Vec::new();
         for word in modifiers.text.split_whitespace() {
-            let understood = match (word, word.split_at(1)) {
-                ("interrupts", _) => set(&mut refinement.interrupts, true),
-                ("internal", _) => set(&mut refinement.internal, true),
-                (_, ("!", number)) => number.parse().map(|priority| refinement.priority = priority).is_ok(),
-                (_, ("%", number)) => {
+            let understood = match (word, word.strip_prefix('!'), word.strip_prefix('%')) {
+                ("interrupts", ..) => set(&mut refinement.interrupts, true),
+                ("internal", ..) => set(&mut refinement.internal, true),
+                (_, Some(number), _) => number.parse().map(|priority| refinement.priority = priority).is_ok(),
+                (_, _, Some(number)) => {
                     set(&mut refinement.weight, weight(number)) && refinement.weight.is_some()
                 }
                 _ => false,

@@ -205,6 +205,8 @@ fn faults_of_texts_are_placed() {
         ("IAC: c\nStates:\n  r OR\n    START\nTransitions:\n  START -> a\n", "E0271", "a"),
         ("IAC: c\nStates:\n  r OR\n    START\nTransitions:\n  START to r\n", "E0240", "START to r"),
         ("IAC: c\nStates:\n  r OR\n    START\nTransitions:\n  START -> r !x\n", "E0242", "!x"),
+        ("IAC: c\nStates:\n  r OR\n    a\u{a0}thing\n", "E0270", "a\u{a0}thing"),
+        ("IAC: c\nStates:\n  r OR\n    START\nTransitions:\n  START -> r !1 \u{e9}\n", "E0242", "!1 \u{e9}"),
         ("IAC: c\nStates:\n  r OR\n    prority = 2\n    START\n", "E0266", "prority"),
         ("IAC: c\nStates:\n  r OR\n    priority = high\n    START\n", "E0245", "high"),
         ("IAC: c\nStates:\n  r OR\n    variables = x\n    START\n", "E0269", "x"),
