@@ -66,9 +66,13 @@ pub(crate) fn read(path: &Path, layers: &Layers, diagnostics: &mut Vec<Diagnosti
     let (field, simulator) = files.environment(&root, path, diagnostics);
     let geometry = geometry(field, files.grammar, diagnostics);
     let (physics, mut rules, radio) =
-        simulator.map(|root| simulator_parts(&root, files.grammar)).unwrap_or_default();
-    if let Err(error) = radio.validate() {
-        diagnostics.push(root.error("E0405", root.name_span(), error.to_string()));
+        simulator.as_ref().map(|root| simulator_parts(root, files.grammar)).unwrap_or_default();
+    for (part, valid) in [("physics", physics.validate()), ("radio", radio.validate())] {
+        if let Err(error) = valid {
+            let element = simulator.as_ref().and_then(|root| root.children_named(part).last());
+            let element = element.unwrap_or(&root);
+            diagnostics.push(element.error("E0405", element.name_span(), error.to_string()));
+        }
     }
     let values = Values::of(&root, files.grammar);
     let objects = values.word("objects", &grammar::OBJECTS).unwrap_or_default();

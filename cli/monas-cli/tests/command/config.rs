@@ -361,3 +361,16 @@ fn the_kick_of_a_file_moves_the_joints_and_behaviours_learn_its_result() {
     let between = result["seconds"].as_f64().zip(waved["seconds"].as_f64()).map(|(end, up)| end - up);
     assert!(between.is_some_and(|seconds| (0.2..1.0).contains(&seconds)), "{between:?}");
 }
+
+#[test]
+fn physics_that_contradict_themselves_are_found_in_their_file() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let physics = "<simulator>\n<physics><kick_strike>5</kick_strike></physics></simulator>\n";
+    fs::write(folder.path().join("simulator.xml"), physics).expect("a file");
+    let game = folder.path().join("match.xml");
+    fs::write(&game, "<match simulator=\"simulator.xml\"/>\n").expect("a file");
+    let answer = monas(&["config", "check", &game.to_string_lossy()]);
+    assert_eq!(answer.code, Some(3), "{answer:?}");
+    assert!(answer.err.contains("error[E0405]: a kick strikes after it has ended"), "{answer:?}");
+    assert!(answer.err.contains("simulator.xml:2:2"), "{answer:?}");
+}

@@ -28,6 +28,16 @@ fn all_hold(role: &str, least: usize) {
 }
 
 #[test]
+fn a_wait_beyond_the_last_moment_of_time_ends() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (model, scenario) = (folder.path().join("m.srm"), folder.path().join("long.scenario"));
+    fs::write(&model, "m = Wait\n").expect("a file");
+    fs::write(&scenario, "model m.srm\nstart\nwait 18446744073709ms\nwait 1ms\n").expect("a file");
+    let answer = monas(&["model", "run", &model.to_string_lossy(), &scenario.to_string_lossy()]);
+    assert!(matches!(answer.code, Some(0 | 5)), "{answer:?}");
+}
+
+#[test]
 fn the_goalie_does_what_its_scenarios_say() {
     all_hold("goalie", 20);
 }

@@ -35,6 +35,26 @@ fn text(path: &Path) -> String {
 }
 
 #[test]
+fn an_output_that_is_the_tape_and_moments_outside_of_it_are_refused() {
+    let tape = tape();
+    let before = fs::read(&tape).expect("the tape");
+    let exported = monas(&["tape", "export", &tape, "-o", &tape]);
+    assert_eq!(exported.code, Some(2), "{exported:?}");
+    assert!(exported.err.contains("is the tape itself: name another file"), "{exported:?}");
+    assert!(fs::read(&tape).expect("the tape") == before);
+    let what_if = |times: &[&str]| {
+        let change = ["--set", "agent.Goalie.frequency=50"];
+        monas(&[&["tape", "what-if", &tape], times, &change].concat())
+    };
+    let late = what_if(&["--at", "100s"]);
+    assert_eq!(late.code, Some(2), "{late:?}");
+    assert!(late.err.contains("--at is 100.000 s, and the tape ends at 25.000 s"), "{late:?}");
+    let short = what_if(&["--at", "5s", "--for", "1s"]);
+    assert_eq!(short.code, Some(2), "{short:?}");
+    assert!(short.err.contains("--for is a time of the match, which is before --at"), "{short:?}");
+}
+
+#[test]
 fn a_tape_is_verified_as_a_whole_and_its_log_is_read() {
     let answer = done(&["tape", "verify", &tape(), "--format", "json"]);
     let replayed = done(&["tape", "replay", &tape(), "--verify", "--format", "json"]);

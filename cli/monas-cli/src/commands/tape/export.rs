@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::io::{BufWriter, Write};
+use std::path::Path;
 
 use monas_files::AtomicFile;
 use monas_tape::{Decoder, RecordedSample, Recording, Value};
@@ -23,6 +24,11 @@ pub(crate) fn execute(
     match &arguments.output {
         None => write(arguments, &recording, &mut BufWriter::new(&mut *console.out))?,
         Some(path) => {
+            let same = |path: &Path| path.canonicalize().ok();
+            if same(path).is_some_and(|output| same(&arguments.file) == Some(output)) {
+                let path = path.display();
+                return Err(CommandFailure::Usage(format!("{path} is the tape itself: name another file")));
+            }
             let cannot = |error| {
                 CommandFailure::Failed(Format::Text, format!("cannot write {}: {error}", path.display()))
             };
