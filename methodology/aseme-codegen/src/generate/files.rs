@@ -114,7 +114,9 @@ impl ActivityFiles {
         if !is_taken {
             self.imported.entry(module.clone()).or_default().push(rust.clone());
         }
-        self.files.insert(format!("{SKELETONS}{module}.rs"), skeleton_text(name, &rust, words));
+        // `mod r#move;` loads `move.rs`
+        let file = module.strip_prefix("r#").unwrap_or(&module);
+        self.files.insert(format!("{SKELETONS}{file}.rs"), skeleton_text(name, &rust, words));
         self.own.insert(module);
         self.called.insert(name.to_owned(), RustActivity { path, is_function: false });
     }

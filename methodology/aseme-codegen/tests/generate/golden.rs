@@ -85,6 +85,18 @@ fn rustfmt_leaves_them_as_they_are() {
     }
 }
 
+/// Rust looks for the module `r#move` in the file `move.rs`.
+#[test]
+fn skeletons_called_like_keywords_are_in_files_that_rust_finds() {
+    let words = RustBindings { registers: true, runtime: "monas::generated".into(), ..soccer() };
+    let files = generate(&chart("r.srm", "r = Move . Super . Union"), &words).expect("it can be written");
+    let modules = &files["src/activities.rs"];
+    for (module, file) in [("r#move", "move"), ("super_", "super_"), ("union", "union")] {
+        assert!(modules.contains(&format!("mod {module};\n")), "{modules}");
+        assert!(files.contains_key(&format!("src/activities/{file}.rs")), "{:?}", files.keys());
+    }
+}
+
 /// A project's messages are in a crate that is called like a module of the generated crate.
 #[test]
 fn a_crate_of_messages_is_not_the_module_of_messages() {
