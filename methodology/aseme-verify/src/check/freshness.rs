@@ -9,7 +9,12 @@
 //! topics on whose messages the last waiting activity ended, and those published in the region
 //! since. Activities say what they end on (`Activity::topics`); for those that do not, nothing is
 //! reported.
+//!
+//! A finding needs one path on which a topic is not published. So of all paths from a state to a
+//! place, the topics that are published on each of them suffice: their number does not grow with
+//! the number of paths.
 
+use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, BTreeSet};
 
 use yase::{Diagnostic, NodeId, NodeKind, TransitionId};
@@ -18,15 +23,18 @@ use crate::checked_model::CheckedModel;
 use crate::program_symbols::ProgramSymbols;
 
 /// What is known of the moment in which a place is reached.
-#[derive(Clone, PartialEq, Eq, PartialOrd, Ord, Debug, Default)]
+#[derive(Clone, Debug)]
 struct Moment<'a> {
-    /// The state whose activity ended, none before the first that waits.
-    state: Option<NodeId>,
+    /// The state whose activity ended, the last that waits.
+    state: NodeId,
     /// The topics on whose messages it may have ended.
-    ended_on: BTreeSet<&'a str>,
-    /// The topics that it and its successors have published since.
+    ended_on: &'a BTreeSet<String>,
+    /// The topics that it and its successors have published since, on every path.
     published: BTreeSet<&'a str>,
 }
+
+/// The moments in which a place is reached, by the state whose activity ended.
+type Moments<'a> = BTreeMap<NodeId, Moment<'a>>;
 
 /// Guards that are read before what they read is derived.
 pub(crate) fn stale(subject: &CheckedModel, world: &ProgramSymbols) -> Vec<Diagnostic> {
@@ -53,17 +61,16 @@ pub(crate) fn stale(subject: &CheckedModel, world: &ProgramSymbols) -> Vec<Diagn
             continue;
         }
         for (moment, path) in
-            moments[source.0 as usize].iter().flat_map(|it| read.iter().map(move |path| (it, *path)))
+            moments[source.0 as usize].values().flat_map(|it| read.iter().map(move |path| (it, *path)))
         {
             if moment.published.contains(path) || moment.ended_on.contains(path) {
                 continue;
             }
             let origin = origins(world, path);
-            let (Some(state), Some(cause)) = (moment.state, origin.intersection(&moment.ended_on).next())
-            else {
+            let Some(cause) = moment.ended_on.iter().find(|topic| origin.contains(topic.as_str())) else {
                 continue;
             };
-            found.push(report(subject, world, id, state, path, cause));
+            found.push(report(subject, world, id, moment.state, path, cause));
         }
     }
     found.sort_by(|a, b| (a.span, &a.message).cmp(&(b.span, &b.message)));
@@ -114,6 +121,19 @@ fn origins<'a>(world: &'a ProgramSymbols, path: &'a str) -> BTreeSet<&'a str> {
     origins
 }
 
+/// Adds a moment to those of a place; returns what is known now, if that is new.
+fn joined<'m, 'a>(known: &'m mut Moments<'a>, moment: Moment<'a>) -> Option<&'m Moment<'a>> {
+    match known.entry(moment.state) {
+        Entry::Vacant(new) => Some(new.insert(moment)),
+        Entry::Occupied(known) => {
+            let known = known.into_mut();
+            let before = known.published.len();
+            known.published.retain(|topic| moment.published.contains(topic));
+            (known.published.len() < before).then_some(known)
+        }
+    }
+}
+
 /// Follows the completions of states.
 struct MomentSearch<'a> {
     subject: &'a CheckedModel,
@@ -123,31 +143,30 @@ struct MomentSearch<'a> {
 
 impl<'a> MomentSearch<'a> {
     /// The moments in which each node completes, or is passed through.
-    fn run(&self) -> Vec<BTreeSet<Moment<'a>>> {
-        let mut moments = vec![BTreeSet::new(); self.subject.chart.nodes().len()];
+    fn run(&self) -> Vec<Moments<'a>> {
+        let mut moments = vec![Moments::new(); self.subject.chart.nodes().len()];
         let basic = self.subject.chart.nodes().filter(|(_, node)| node.kind == NodeKind::Basic);
-        let mut open: Vec<(NodeId, Moment<'a>)> = basic.map(|(id, _)| (id, Moment::default())).collect();
+        let mut open: Vec<(NodeId, Option<Moment<'a>>)> = basic.map(|(id, _)| (id, None)).collect();
         while let Some((node, before)) = open.pop() {
-            let moment = self.after(node, before);
-            if moments[node.0 as usize].insert(moment.clone()) {
-                open.extend(self.next(node).into_iter().map(|next| (next, moment.clone())));
+            let Some(moment) = self.after(node, before) else { continue };
+            if let Some(changed) = joined(&mut moments[node.0 as usize], moment) {
+                open.extend(self.next(node).into_iter().map(|next| (next, Some(changed.clone()))));
             }
         }
         moments
     }
 
-    /// The moment after a node that is reached in a moment.
-    fn after(&self, node: NodeId, before: Moment<'a>) -> Moment<'a> {
+    /// The moment after a node that is reached in a moment; none before the first state that waits.
+    fn after(&self, node: NodeId, before: Option<Moment<'a>>) -> Option<Moment<'a>> {
         let Some(activity) = self.activities.get(&node) else { return before };
-        let paths = |topics: Option<&'a BTreeSet<String>>| topics.into_iter().flatten().map(String::as_str);
-        let published = paths(self.world.activities.get(activity).and_then(Option::as_ref));
+        let topics = self.world.activities.get(activity).and_then(Option::as_ref);
+        let published = topics.into_iter().flatten().map(String::as_str);
         match self.world.ended_by.get(activity).filter(|topics| !topics.is_empty()) {
-            Some(topics) => Moment {
-                state: Some(node),
-                ended_on: paths(Some(topics)).collect(),
-                published: published.collect(),
-            },
-            None => Moment { published: before.published.into_iter().chain(published).collect(), ..before },
+            Some(ended_on) => Some(Moment { state: node, ended_on, published: published.collect() }),
+            None => before.map(|mut moment| {
+                moment.published.extend(published);
+                moment
+            }),
         }
     }
 

@@ -245,3 +245,28 @@ fn rules_and_outcomes_read_what_the_program_has() {
     assert_eq!(linked.iter().filter(|it| unreadable(it)).count(), 1, "{linked:?}");
     assert_eq!(found(None).iter().filter(|it| it.contains("M17")).count(), 0);
 }
+
+/// Of 24 activities that may run in any order any set may have published before the guard.
+#[test]
+fn a_stale_guard_is_found_behind_any_number_of_alternatives() {
+    let mut world = world("bringer");
+    let names: Vec<String> = (0..24).map(|number| format!("Note{number}")).collect();
+    for name in &names {
+        world.activities.insert(name.clone(), Some([format!("team/{name}")].into()));
+        world.readers.insert(name.clone(), Some(BTreeSet::new()));
+    }
+    // one of them derives the news, but another one may be chosen
+    world.activities.insert("Note7".into(), Some(["soccer/news".to_owned()].into()));
+    let role = format!(
+        "Role: r\nLiveness:\nr = (Bring . ({})+ . [Walk])~ || Judge~\nTransitions:\nCONDITION -> Walk : [News.good]\n",
+        names.join("|")
+    );
+    let mut settings = CheckSettings::default();
+    settings.states = 0;
+    settings.world = Some(world);
+    let report = check(&Source::new("r.srm", role), &settings);
+    let stale = report.findings.iter().filter(|finding| finding.diagnostic.code == "M29");
+    let messages: Vec<&str> = stale.map(|finding| finding.diagnostic.message.as_str()).collect();
+    assert_eq!(messages.len(), 1, "{messages:?}");
+    assert!(messages[0].contains("reads `soccer/news`"), "{messages:?}");
+}
