@@ -158,8 +158,11 @@ impl<'a> ProductSearch<'a> {
         let mut open = VecDeque::new();
         for step in begin {
             let at = TimedLetter { letter: self.step(step).letter, now: 0 };
-            let result = stack.begin(self.contrary, at);
-            self.is_whole &= result.is_ok();
+            if stack.begin(self.contrary, at).is_err() {
+                // the clauses of a step that was not finished imply nothing
+                self.is_whole = false;
+                continue;
+            }
             if let Some(way) = self.arrive(None, step, &stack, &mut open, candidates) {
                 return Some(way);
             }
@@ -175,8 +178,10 @@ impl<'a> ProductSearch<'a> {
             }
             for step in self.from[state].clone() {
                 let at = TimedLetter { letter: self.step(step).letter, now: self.step(step).elapsed };
-                let result = stack.step(self.contrary, &[clause], at);
-                self.is_whole &= result.is_ok();
+                if stack.step(self.contrary, &[clause], at).is_err() {
+                    self.is_whole = false;
+                    continue;
+                }
                 if let Some(way) = self.arrive(Some(place), step, &stack, &mut open, candidates) {
                     return Some(way);
                 }

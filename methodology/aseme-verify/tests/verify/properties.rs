@@ -226,6 +226,19 @@ fn shipped(role: &str, change: (&str, &str)) -> Vec<(String, PropertyOutcome)> {
     judgements.into_iter().map(|it| (it.name, it.outcome)).collect()
 }
 
+/// The clauses of a step that needs too many say nothing: the property is undecided.
+#[test]
+fn a_property_with_too_many_obligations_is_not_violated() {
+    let role = "Role: r\nLiveness:\nr = A . [Z] . A~\nTransitions:\nCONDITION -> Z : [false]\n";
+    assert_eq!(outcome(role, "not (in Z)"), PropertyOutcome::Holds);
+    let each =
+        |number: usize| format!("((eventually [Ball.x > {number}]) until (eventually [Ball.y > {number}]))");
+    let all: Vec<String> = (0..10).map(each).collect();
+    let formula = format!("not ({} and in Z)", all.join(" and "));
+    let (_, judgements, findings) = judged(role, &formula, &CheckSettings::default());
+    assert_eq!(judgements[0].outcome, PropertyOutcome::NotDecided, "{findings:?}");
+}
+
 #[test]
 fn the_shipped_roles_have_their_properties() {
     for role in ["goalie", "attacker"] {
