@@ -49,7 +49,7 @@ pub fn participant_formula(name: &str, liveness: &str) -> String {
 }
 
 /// A valid name of a formula: other characters become underscores.
-fn formula_name(name: &str) -> String {
+pub fn formula_name(name: &str) -> String {
     let letter = |letter: char| if aseme::text::is_name_character(letter) { letter } else { '_' };
     let name: String = name.trim().chars().map(letter).collect();
     if name.is_empty() { "_".into() } else { name }

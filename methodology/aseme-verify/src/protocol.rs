@@ -31,7 +31,7 @@ use aseme::srm::Srm;
 use aseme_models::aip::{Aip, Participant, Protocol};
 use aseme_models::iac::{ChartKind, Iac, IacTransition};
 use aseme_models::transformations::{
-    ShapeMatch, conditions, participant_formula, participants, protocol_formulas, same_shape,
+    ShapeMatch, conditions, formula_name, participant_formula, participants, protocol_formulas, same_shape,
 };
 
 /// Limit of explored states per chart.
@@ -165,9 +165,10 @@ fn protocol_of<'a>(eac: &Iac, aip: &'a Aip, found: &mut Conformance) -> Option<&
     protocol
 }
 
+/// The participant whose part has a name in charts.
 fn part_named<'a>(aip: &'a Aip, protocol: &Protocol, name: &str) -> Option<&'a Participant> {
-    let parts = protocol.participants.iter().filter_map(|&index| aip.participants.get(index));
-    parts.into_iter().find(|part| part.name == name)
+    let mut parts = protocol.participants.iter().filter_map(|&index| aip.participants.get(index));
+    parts.find(|part| formula_name(&part.name) == name)
 }
 
 /// One part of a protocol's chart.

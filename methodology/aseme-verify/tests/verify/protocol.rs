@@ -277,3 +277,18 @@ fn a_player_that_does_otherwise_than_the_protocol_is_refused() {
     other.nodes.iter_mut().filter(|it| it.name.starts_with("center")).for_each(|it| it.name = "x".into());
     assert!(said(&player_conforms(&other, &eac(), &aip()))[0].starts_with("E0861"));
 }
+
+/// Characters of a participant's name that a formula cannot have are underscores in charts.
+#[test]
+fn a_participant_whose_name_is_no_formula_is_found_in_the_charts() {
+    let renamed = |name: &str| text(name).replace("center", "the_center");
+    let Model::Aip(mut aip) = clean(&renamed("attack.aip")) else { panic!("protocols") };
+    aip.participants.iter_mut().for_each(|it| it.name = it.name.replace('_', " "));
+    let eac = chart(&renamed("attack.eac"));
+    assert_eq!(said(&chart_conforms(&eac, &aip)), [""; 0]);
+    let player = player_conforms(&chart(&renamed("extended_attacker.iac")), &eac, &aip);
+    assert_eq!(said(&player), [""; 0]);
+    let compared: Vec<&str> = player.explored.iter().map(|(name, _)| name.as_str()).collect();
+    let parts = ["the_center", "the_center within player", "the_center_for", "the_center_for within player"];
+    assert_eq!(compared, parts);
+}
