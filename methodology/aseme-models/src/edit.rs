@@ -258,8 +258,7 @@ fn without_lines(source: &str, span: Span) -> TextEdit {
 
 /// A text that is written on one line, without comments.
 fn on_one_line(text: &str, what: &str) -> Result<String, EditRefusal> {
-    let line = text.split_whitespace().collect::<Vec<_>>().join(" ");
-    let line = if text.contains(['\n', '\r', '\t']) { line } else { text.trim().to_owned() };
+    let line = if text.contains(['\n', '\r', '\t']) { text::one_line(text) } else { text.trim().to_owned() };
     match text::is_plain(&line) {
         true => Ok(line),
         false => Err(EditRefusal::new(format!("`{line}` is not {what}"))

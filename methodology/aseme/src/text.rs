@@ -59,6 +59,27 @@ impl QuoteScanner {
     }
 }
 
+/// A text on one line, with single blanks outside double quotes.
+pub fn one_line(text: &str) -> String {
+    let mut line = String::with_capacity(text.len());
+    let (mut quotes, mut is_apart) = (QuoteScanner::default(), false);
+    for character in text.trim().chars() {
+        if character == '\n' {
+            // no quote is open beyond its line
+            quotes = QuoteScanner::default();
+        }
+        if !quotes.hold(character) && character.is_whitespace() {
+            is_apart = true;
+            continue;
+        }
+        if std::mem::take(&mut is_apart) {
+            line.push(' ');
+        }
+        line.push(character);
+    }
+    line
+}
+
 /// The first position of a text outside quotes.
 pub fn outside_quotes(text: &str, wanted: &str) -> Option<usize> {
     let mut quotes = QuoteScanner::default();
@@ -146,6 +167,14 @@ mod tests {
     fn an_escaped_quote_does_not_end_a_text() {
         assert_eq!(without_comments(r#""a \" # b" # c"#), r#""a \" # b"    "#);
         assert_eq!(without_comments(r#""a \\" # b"#), r#""a \\"    "#);
+    }
+
+    #[test]
+    fn one_line_keeps_the_blanks_within_quotes() {
+        assert_eq!(one_line(" a  ->\tb :\r\n  [x ==  \"c  d\"]  \n"), "a -> b : [x == \"c  d\"]");
+        assert_eq!(one_line("\"a  \\\"  b\"  c"), "\"a  \\\"  b\" c");
+        assert_eq!(one_line("\"a\n  b  c"), "\"a b c");
+        assert_eq!(one_line(" \n "), "");
     }
 
     #[test]

@@ -147,8 +147,7 @@ fn role(source: &str) -> ModelOutline {
         StateOutline { span, settings }
     });
     let blanked = text::without_comments(source);
-    let one_line =
-        |span: Span| blanked[span.start..span.end].split_whitespace().collect::<Vec<_>>().join(" ");
+    let one_line = |span: Span| text::one_line(&blanked[span.start..span.end]);
     let transitions = (0..role.transition_count()).map(|number| {
         let entry = role.entry_of(TransitionId(number));
         let parts = entry.map(|(entry, _)| file.transition_parts(entry));

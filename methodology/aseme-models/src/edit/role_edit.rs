@@ -98,7 +98,8 @@ impl<'a> RoleText<'a> {
             // what a wildcard says stays for the parts that are not given
             let known = self.entry_of(id).map(|(entry, _)| (entry, self.file.transition_parts(entry)));
             let part = |span: fn(&aseme::srm::TransitionParts) -> Span| {
-                known.as_ref().map(|(_, parts)| one_line(&self.blanked, span(parts))).unwrap_or_default()
+                let part = known.as_ref().map(|(_, parts)| span(parts));
+                part.map(|part| text::one_line(&self.blanked[part.start..part.end])).unwrap_or_default()
             };
             let expression = expression.unwrap_or_else(|| part(|parts| parts.expression));
             let modifiers = modifiers.unwrap_or_else(|| part(|parts| parts.modifiers));
@@ -325,8 +326,4 @@ fn entry_line(ends: &str, modifiers: &str, expression: &str) -> String {
     let modifiers = if modifiers.is_empty() { String::new() } else { format!(" {modifiers}") };
     let expression = if expression.is_empty() { String::new() } else { format!(" : {expression}") };
     format!("{ends}{modifiers}{expression}")
-}
-
-fn one_line(text: &str, span: Span) -> String {
-    text[span.start..span.end].split_whitespace().collect::<Vec<_>>().join(" ")
 }

@@ -19,7 +19,7 @@ pub fn entries_of_role(file: &SrmFile) -> Vec<(Section, String)> {
     let blanked = text::without_comments(file.text());
     let of_section = |section: Section| file.entries().iter().filter(move |entry| entry.section == section);
     let entries = CARRIED.into_iter().flat_map(of_section);
-    entries.map(|entry| (entry.section, one_line(&blanked[entry.span.start..entry.span.end]))).collect()
+    entries.map(|entry| (entry.section, text::one_line(&blanked[entry.span.start..entry.span.end]))).collect()
 }
 
 /// The refinements of a chart: everything that its formulas do not define, each with its shortest
@@ -53,7 +53,7 @@ fn transition(chart: &Statechart, id: TransitionId, transition: &Transition) -> 
         format!(" : {}", transition.expression)
     };
     let also = if place_among_twins(chart, id) > 0 { " also" } else { "" };
-    one_line(&format!("{path}{also}{}{colon}", modifiers(transition)))
+    text::one_line(&format!("{path}{also}{}{colon}", modifiers(transition)))
 }
 
 /// `source -> target`. A transition to a HISTORY is written in a role as one to its composite.
@@ -102,11 +102,8 @@ fn state(chart: &Statechart, id: NodeId) -> Option<String> {
         _ => None,
     });
     said.extend(histories);
-    (!said.is_empty()).then(|| one_line(&format!("{} : {}", path::shortest_path(chart, id), said.join(", "))))
-}
-
-fn one_line(text: &str) -> String {
-    text.split_whitespace().collect::<Vec<_>>().join(" ")
+    (!said.is_empty())
+        .then(|| text::one_line(&format!("{} : {}", path::shortest_path(chart, id), said.join(", "))))
 }
 
 /// The text of a role with lines added at the end of a section, which is created if it is missing.

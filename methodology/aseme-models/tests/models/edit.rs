@@ -116,6 +116,22 @@ fn a_transition_without_an_entry_gets_one() {
 }
 
 #[test]
+fn blanks_in_texts_stay_when_an_entry_becomes_one_line() {
+    let text = "Liveness:\na = b . c | d . c\n\nTransitions:\n* -> c\n  : [Say.text   == \"go  left\"]\n";
+    let added = |edit: &ModelEdit| {
+        let after = edited(text, edit);
+        after.lines().find(|line| line.starts_with("b -> ")).map(String::from).unwrap_or(after)
+    };
+    let way = transition(text, "c", "Say");
+    assert_eq!(added(&set(way, "[Say.text\n == \"a  b\"]")), "b -> c : [Say.text == \"a  b\"]");
+    let modifiers = Some("!3".to_owned());
+    let edit = ModelEdit::SetTransition { transition: way, expression: None, modifiers };
+    assert_eq!(added(&edit), "b -> c !3 : [Say.text == \"go  left\"]");
+    let ModelOutline::Role { transitions, .. } = outline(text) else { panic!("a role") };
+    assert!(transitions.iter().any(|it| it.expression == "[Say.text == \"go  left\"]"));
+}
+
+#[test]
 fn modifiers_and_parallel_transitions() {
     let kick = transition(EXTENDED, "center", "center_for_is_farthest");
     let modifiers = Some("!3 interrupts".to_owned());

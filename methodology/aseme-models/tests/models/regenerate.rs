@@ -1,5 +1,6 @@
 //! Refinements that survive the edit of a formula.
 
+use aseme::srm::Section;
 use aseme::{SrmFile, role_to_statechart, to_text};
 use aseme_models::Iac;
 use aseme_models::iac::ChartKind;
@@ -352,4 +353,30 @@ States:
         let made = comment_out_refinements(&file(&edited)).unwrap();
         assert!(made.renamed.is_empty() && !made.lost.is_empty(), "{}", made.text);
     }
+}
+
+/// Blanks between the parts of an entry are single ones; those in texts are what a guard compares
+/// with.
+#[test]
+fn blanks_in_texts_are_carried_as_they_are() {
+    let role = "\
+Role: r
+Liveness:
+r = A . B
+Constants:
+name =   \"a  b\"
+Transitions:
+A -> B
+   : [Say.text   == \"go  left\"]
+States:
+B : entry =  Say.text = \"come   back\"
+";
+    let entries =
+        |entries: Vec<(Section, String)>| entries.into_iter().map(|(_, line)| line).collect::<Vec<_>>();
+    let texts = ["\"a  b\"", "\"go  left\"", "\"come   back\""];
+    for lines in [entries(entries_of_role(&file(role))), entries(entries_of_chart(&chart(role)))] {
+        assert_eq!(lines.len(), 3, "{lines:?}");
+        assert!(lines.iter().zip(texts).all(|(line, text)| line.contains(text)), "{lines:?}");
+    }
+    assert_eq!(entries_of_role(&file(role))[1].1, "A -> B : [Say.text == \"go  left\"]");
 }

@@ -33,7 +33,7 @@ impl Reader {
         self.diagnostics.extend(findings);
         let Some((source, target, modifiers)) = ends else { return };
         let Modifiers { also, priority, weight, interrupts, internal } = modifiers;
-        let text = one_line(text);
+        let text = text::one_line(text);
         self.srm.transitions.push(TransitionEntry {
             source,
             target,
@@ -155,9 +155,4 @@ pub(crate) fn entry_spans(blanked: &str, body: Span, begins: impl Fn(&str) -> bo
         }
     }
     spans
-}
-
-/// An entry on one line, with single blanks.
-pub(crate) fn one_line(text: &str) -> String {
-    text.split_whitespace().collect::<Vec<_>>().join(" ")
 }

@@ -3,7 +3,7 @@
 use yase::statechart::{Frame, Point};
 use yase::{Diagnostic, Span};
 
-use super::entries::{entry_spans, modifiers_start, one_line};
+use super::entries::{entry_spans, modifiers_start};
 use super::{LayoutEntry, LayoutTarget, Reader, Section, SrmEntry};
 use crate::layout::{self, AT, BENDS_KEY, FRAME_KEYS, SIZE, VIA};
 use crate::text;
@@ -39,7 +39,7 @@ impl Reader {
         for (key, value) in self.settings(blanked, Span::new(colon + 1, span.end), keys) {
             self.layout_setting(blanked, key, value, keys, &mut said);
         }
-        let text = one_line(text);
+        let text = text::one_line(text);
         let Some(of) = of else { return };
         self.srm.layout.push(LayoutEntry { of, frame: said.frame, bends: said.bends, text, span });
     }

@@ -5,7 +5,7 @@ use std::time::Duration;
 use yase::expression::{Action, parse_actions_at};
 use yase::{Diagnostic, NodeKind, Span};
 
-use super::entries::{entry_spans, one_line};
+use super::entries::entry_spans;
 use super::{Reader, Section, SrmEntry, StateEntry};
 use crate::text;
 
@@ -30,7 +30,7 @@ impl Reader {
             );
         };
         let path = self.path(blanked, Span::new(span.start, colon));
-        let text = one_line(&blanked[span.start..span.end]);
+        let text = text::one_line(&blanked[span.start..span.end]);
         let mut settings = StateSettings::default();
         for (key, value) in self.settings(blanked, Span::new(colon + 1, span.end), &KEYS) {
             self.setting(blanked, key, value, &mut settings);
