@@ -1,6 +1,8 @@
 //! Properties of nodes and transitions besides names and expressions, in the notation of model
 //! files.
 
+use std::time::Duration;
+
 use yase::expression::{Action, TransitionExpression};
 use yase::statechart::{Node, NodeId, NodeKind, Statechart, Transition};
 
@@ -68,8 +70,17 @@ pub fn refinements(node: &Node) -> Vec<String> {
     lines.extend(actions("entry", &node.entry));
     lines.extend(actions("exit", &node.exit));
     lines.extend((!node.defer.is_empty()).then(|| format!("defer = {}", node.defer.join(" "))));
-    lines.extend(node.duration.map(|duration| format!("duration = {}ms", duration.as_secs_f64() * 1000.0)));
+    lines.extend(node.duration.map(|duration| format!("duration = {}", duration_text(duration))));
     lines
+}
+
+/// A duration in milliseconds, exact to the nanosecond.
+pub fn duration_text(duration: Duration) -> String {
+    let milliseconds = duration.as_millis();
+    match duration.subsec_nanos() % 1_000_000 {
+        0 => format!("{milliseconds}ms"),
+        rest => format!("{milliseconds}.{}ms", format!("{rest:06}").trim_end_matches('0')),
+    }
 }
 
 fn actions(key: &str, actions: &[Action]) -> Option<String> {
@@ -79,4 +90,24 @@ fn actions(key: &str, actions: &[Action]) -> Option<String> {
 fn actions_text(actions: &[Action]) -> String {
     let expression = TransitionExpression { actions: actions.to_vec(), ..TransitionExpression::default() };
     expression.to_string().trim_start_matches(['/', ' ']).to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// 1001 ms are no number of seconds that a floating-point number can represent.
+    #[test]
+    fn durations_are_exact() {
+        let written = |nanoseconds| duration_text(Duration::from_nanos(nanoseconds));
+        let exact = [1_001_000_000, 0, 1_500_000, 1, 86_400_000_000_001].map(written);
+        assert_eq!(exact, ["1001ms", "0ms", "1.5ms", "0.000001ms", "86400000.000001ms"]);
+        let mut chart = Statechart::new("r");
+        let state = chart.add(Statechart::ROOT, Node::new(NodeKind::Basic, "a"));
+        chart.node_mut(state).duration = Some(Duration::from_millis(1_001));
+        assert_eq!(refinements(chart.node(state)), ["duration = 1001ms"]);
+        let document = crate::to_xstate(&chart).text;
+        assert!(document.contains("\"milliseconds\": 1001"), "{document}");
+        assert!(!document.contains("1001."), "{document}");
+    }
 }

@@ -82,7 +82,7 @@ impl XStateWriter<'_> {
             self.lost.of_node(id, "the deferred events");
         }
         if let Some(duration) = node.duration {
-            meta.push(("milliseconds".into(), JsonValue::Number(duration.as_secs_f64() * 1000.0)));
+            meta.push(("milliseconds".into(), JsonValue::Number(duration.as_nanos() as f64 / 1e6)));
             self.lost.of_node(id, "the duration");
         }
         self.writer.value("meta", &JsonValue::Object(meta));

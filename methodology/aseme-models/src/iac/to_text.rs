@@ -1,6 +1,7 @@
 //! Writer of the text form.
 
 use yase::statechart::ConstantValue;
+use yase_export::notation::duration_text;
 
 use super::path::{NodePaths, name_text};
 use super::{ChartKind, Iac, IacNode, IacTransition};
@@ -128,14 +129,6 @@ fn settings(node: &IacNode, label: &str, variables: &[String], indent: usize, it
     let texts =
         [("functionality", &node.functionality), ("actions", &node.actions), ("metadata", &node.metadata)];
     texts.into_iter().for_each(|(key, value)| set(item, indent, key, value));
-}
-
-/// The duration in milliseconds if that is exact, otherwise in nanoseconds.
-fn duration_text(duration: std::time::Duration) -> String {
-    match duration.as_nanos() {
-        nanoseconds if nanoseconds % 1_000_000 == 0 => format!("{}ms", nanoseconds / 1_000_000),
-        nanoseconds => format!("{nanoseconds}ns"),
-    }
 }
 
 /// The reference to each variable.

@@ -2,6 +2,7 @@
 
 use yase::statechart::Frame;
 use yase::{Diagnostic, NodeId, Span, Statechart};
+use yase_export::notation::duration_text;
 
 use crate::diff::pairs::NodePairs;
 use crate::iac::{Iac, IacNode};
@@ -193,7 +194,7 @@ fn state_content(node: &IacNode, iac: &Iac) -> String {
         .map(|it| it.name.as_str())
         .collect();
     let number = |value: i32| if value == 0 { String::new() } else { value.to_string() };
-    let duration = refinement.duration.map_or(String::new(), |it| format!("{}ms", it.as_secs_f64() * 1000.0));
+    let duration = refinement.duration.map_or(String::new(), duration_text);
     let said = [
         ("functionality", node.functionality.clone()),
         ("variables", variables.join(", ")),

@@ -3,12 +3,13 @@
 use aseme::srm::Section;
 use aseme::{SrmFile, role_to_statechart, to_text};
 use aseme_models::Iac;
+use aseme_models::convert::Model;
 use aseme_models::iac::ChartKind;
 use aseme_models::regenerate::{
     RegeneratedRole, apply_refinements, comment_out_refinements, entries_of_chart, entries_of_role,
     transfer_refinements,
 };
-use yase::{NodeKind, Statechart};
+use yase::{NodeKind, Source, Statechart};
 
 const ROLE: &str = "\
 Role: player
@@ -308,7 +309,7 @@ fn a_newer_model_file_keeps_the_places_of_an_older_one() {
 #[test]
 fn a_state_without_an_activity_is_carried() {
     let text = "IAC: r\n\nStates:\n  r OR\n    START\n    wait BASIC\n      activity = \"\"\n    END\n\nTransitions:\n  START -> wait\n  wait -> END\n";
-    let (waiting, found) = aseme_models::statechart_of(&yase::Source::new("r.iac", text));
+    let (waiting, found) = aseme_models::statechart_of(&Source::new("r.iac", text));
     assert_eq!(found, []);
     let entries = entries_of_chart(&waiting);
     assert_eq!(entries.iter().map(|(_, line)| line.as_str()).collect::<Vec<_>>(), ["wait : activity = \"\""]);
@@ -379,4 +380,20 @@ B : entry =  Say.text = \"come   back\"
         assert!(lines.iter().zip(texts).all(|(line, text)| line.contains(text)), "{lines:?}");
     }
     assert_eq!(entries_of_role(&file(role))[1].1, "A -> B : [Say.text == \"go  left\"]");
+}
+
+/// 1001 ms are no number of seconds that a floating-point number can represent.
+#[test]
+fn durations_are_carried_exactly() {
+    for written in ["1001ms", "1.5ms", "0.000001ms", "86400000ms"] {
+        let role = format!("Role: r\nLiveness:\nr = A . B\nStates:\nB : duration = {written}\n");
+        let chart = chart(&role);
+        let expected = format!("B : duration = {written}");
+        assert_eq!(entries_of_chart(&chart), [(Section::States, expected.clone())]);
+        assert_eq!(self::chart(&role), chart);
+        let text = Model::Chart(Iac::from_statechart(&chart, ChartKind::Intra)).to_text();
+        assert!(text.contains(&format!("duration = {written}\n")), "{text}");
+        let (read, _) = aseme_models::statechart_of(&Source::new("r.iac", text));
+        assert_eq!(to_text(&read), to_text(&chart));
+    }
 }
