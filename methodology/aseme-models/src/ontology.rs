@@ -7,8 +7,9 @@
 //!
 //! A message is the first name of a path that begins with a capital letter, or the one after
 //! `State`, `Signal` or `Data`. A field that is calculated with or compared with a number is a
-//! number, one that is compared with a text is a text, one that is compared with a bare name that
-//! is no constant is an enumeration with that value; any other field is a boolean.
+//! number, one that is compared with a text is a text, one that is compared with a constant is of
+//! its kind, one that is compared with another bare name is an enumeration with that value; any
+//! other field is a boolean. Fields of a message with a value in common have one enumeration.
 //!
 //! ```
 //! let (chart, _) = aseme_models::statechart_of(&yase::Source::new("dog", "Role: dog\nLiveness:\ndog = Sit . Bark\nTransitions:\nSit -> Bark : [Cat.distance < 2 && Cat.mood == LAZY]\n"));

@@ -1,6 +1,9 @@
 //! Collects messages and field types from expressions.
 
+use std::collections::BTreeMap;
+
 use yase::expression::{Action, ActionKind, Expression, ExpressionKind, Path, TransitionExpression, Trigger};
+use yase::statechart::ConstantValue;
 use yase::{Diagnostic, Span, Statechart};
 
 use super::{Ontology, OntologyField, OntologyFieldKind, OntologyMessage, OntologyTopic, is_kind, parts};
@@ -8,15 +11,23 @@ use crate::iac::Variable;
 
 /// Collects the messages of a chart.
 pub(crate) struct Gatherer<'a> {
-    constants: Vec<&'a str>,
+    /// The kind of a field that is compared with a constant, by the name of the constant.
+    constants: BTreeMap<&'a str, OntologyFieldKind>,
     ontology: Ontology,
     found: Vec<Diagnostic>,
 }
 
 impl<'a> Gatherer<'a> {
     pub(crate) fn new(chart: &'a Statechart) -> Gatherer<'a> {
-        let constants = chart.constants.iter().map(|constant| constant.name.as_str()).collect();
-        Gatherer { constants, ontology: Ontology::default(), found: Vec::new() }
+        let constants = chart.constants.iter().map(|constant| {
+            let kind = match constant.value {
+                ConstantValue::Bool(_) => OntologyFieldKind::Condition,
+                ConstantValue::Number(_) => OntologyFieldKind::Number,
+                ConstantValue::Text(_) => OntologyFieldKind::Text,
+            };
+            (constant.name.as_str(), kind)
+        });
+        Gatherer { constants: constants.collect(), ontology: Ontology::default(), found: Vec::new() }
     }
 
     pub(crate) fn finish(self) -> (Ontology, Vec<Diagnostic>) {
@@ -119,8 +130,10 @@ impl<'a> Gatherer<'a> {
             | ExpressionKind::Negative(_) => OntologyFieldKind::Number,
             ExpressionKind::Text(_) => OntologyFieldKind::Text,
             ExpressionKind::Variable(path) => match path.bare() {
-                Some(name) if self.constants.contains(&name) => OntologyFieldKind::Number,
-                Some(name) => OntologyFieldKind::OneOf(vec![name.to_owned()]),
+                Some(name) => match self.constants.get(name) {
+                    Some(kind) => kind.clone(),
+                    None => OntologyFieldKind::OneOf(vec![name.to_owned()]),
+                },
                 None => OntologyFieldKind::Unknown,
             },
             ExpressionKind::Call(..) | ExpressionKind::Absent(_) | ExpressionKind::Present(_) => {

@@ -29,20 +29,63 @@ fn block(text: &mut String, depth: usize, message: &OntologyMessage) {
         return;
     }
     line(text, depth, &format!("message {} {{", message.name));
-    message.fields.iter().for_each(|field| types(text, depth + 1, field));
+    let enumerations = enumerations(&message.fields);
+    message.fields.iter().for_each(|field| types(text, depth + 1, field, &enumerations));
     for (number, field) in (1..).zip(&message.fields) {
-        member(text, depth + 1, field, number);
+        member(text, depth + 1, field, number, &enumerations);
     }
     line(text, depth, "}");
 }
 
-/// The nested types that a field requires.
-fn types(text: &mut String, depth: usize, field: &OntologyField) {
+/// An enumeration of a message.
+struct Enumeration<'a> {
+    /// The fields of this type; it is called after the first.
+    fields: Vec<&'a str>,
+    values: Vec<&'a str>,
+}
+
+impl Enumeration<'_> {
+    fn name(&self) -> String {
+        camel(self.fields.first().copied().unwrap_or_default())
+    }
+}
+
+/// The enumerations of a message. In protobuf the names of values belong to the message around the
+/// enumeration, so fields that have a value in common have one enumeration.
+fn enumerations(fields: &[OntologyField]) -> Vec<Enumeration<'_>> {
+    let mut found: Vec<Enumeration<'_>> = Vec::new();
+    for field in fields {
+        let OntologyFieldKind::OneOf(values) = &field.kind else { continue };
+        let has_one =
+            |it: &Enumeration<'_>| it.values.iter().any(|value| values.iter().any(|own| own == value));
+        let (mut shared, others): (Vec<_>, Vec<_>) = found.into_iter().partition(has_one);
+        shared.push(Enumeration {
+            fields: vec![field.name.as_str()],
+            values: values.iter().map(String::as_str).collect(),
+        });
+        let mut joined = Enumeration { fields: Vec::new(), values: Vec::new() };
+        for enumeration in shared {
+            joined.fields.extend(enumeration.fields);
+            let new = enumeration.values.into_iter().filter(|value| !joined.values.contains(value));
+            let new: Vec<&str> = new.collect();
+            joined.values.extend(new);
+        }
+        found = others;
+        found.push(joined);
+    }
+    found
+}
+
+/// The nested types that a field requires. An enumeration is written at its first field.
+fn types(text: &mut String, depth: usize, field: &OntologyField, enumerations: &[Enumeration<'_>]) {
     match &field.kind {
-        OntologyFieldKind::OneOf(values) => {
-            line(text, depth, &format!("// The values of `{}`.", field.name));
-            line(text, depth, &format!("enum {} {{", camel(&field.name)));
-            for (number, value) in values.iter().enumerate() {
+        OntologyFieldKind::OneOf(_) => {
+            let is_first = |it: &&Enumeration<'_>| it.fields.first() == Some(&field.name.as_str());
+            let Some(enumeration) = enumerations.iter().find(is_first) else { return };
+            let fields: Vec<String> = enumeration.fields.iter().map(|name| format!("`{name}`")).collect();
+            line(text, depth, &format!("// The values of {}.", fields.join(" and ")));
+            line(text, depth, &format!("enum {} {{", enumeration.name()));
+            for (number, value) in enumeration.values.iter().enumerate() {
                 line(text, depth + 1, &format!("{value} = {number};"));
             }
             line(text, depth, "}");
@@ -59,7 +102,13 @@ fn types(text: &mut String, depth: usize, field: &OntologyField) {
     }
 }
 
-fn member(text: &mut String, depth: usize, field: &OntologyField, number: usize) {
+fn member(
+    text: &mut String,
+    depth: usize,
+    field: &OntologyField,
+    number: usize,
+    enumerations: &[Enumeration<'_>],
+) {
     let kind = match &field.kind {
         OntologyFieldKind::Unknown => {
             line(text, depth, "// The type is unknown.");
@@ -68,7 +117,11 @@ fn member(text: &mut String, depth: usize, field: &OntologyField, number: usize)
         OntologyFieldKind::Condition => "bool".to_owned(),
         OntologyFieldKind::Number => "double".to_owned(),
         OntologyFieldKind::Text => "string".to_owned(),
-        OntologyFieldKind::OneOf(_) | OntologyFieldKind::Fields(_) => camel(&field.name),
+        OntologyFieldKind::OneOf(_) => {
+            let is_own = |it: &&Enumeration<'_>| it.fields.contains(&field.name.as_str());
+            enumerations.iter().find(is_own).map_or_else(|| camel(&field.name), Enumeration::name)
+        }
+        OntologyFieldKind::Fields(_) => camel(&field.name),
     };
     line(text, depth, &format!("{kind} {} = {number};", field.name));
 }

@@ -64,6 +64,39 @@ fn topics_come_from_paths_and_from_variables() {
     );
 }
 
+/// The names of values belong to the message around their enumeration.
+#[test]
+fn fields_with_a_value_in_common_have_one_enumeration() {
+    let (ontology, found) = gathered(
+        "[Game.phase == READY && Game.side == LEFT && Game.other == SET && Game.last == READY && Game.last == SET]",
+        &[],
+    );
+    assert_eq!(found, [""; 0]);
+    let text = ontology.to_proto("team");
+    assert_eq!(
+        text.split_once("package team;\n\n").unwrap().1,
+        "message Game {\n  \
+           // The values of `phase` and `other` and `last`.\n  \
+           enum Phase {\n    READY = 0;\n    SET = 1;\n  }\n  \
+           // The values of `side`.\n  \
+           enum Side {\n    LEFT = 0;\n  }\n  \
+           Phase phase = 1;\n  Side side = 2;\n  Phase other = 3;\n  Phase last = 4;\n}\n"
+    );
+}
+
+#[test]
+fn a_field_has_the_kind_of_the_constant_that_it_is_compared_with() {
+    let text = "Role: r\nLiveness:\nr = A . B\nConstants:\nNAME = \"rex\"\nTAME = true\nOLD = 9\nTransitions:\n\
+        A -> B : [Cat.name == NAME && Cat.tame == TAME && Cat.age > OLD]\n";
+    let (chart, read) = crate::statechart_of(&Source::new("r", text));
+    assert_eq!(read, []);
+    let (ontology, _) = of(&chart, &[]);
+    let kinds: Vec<&OntologyFieldKind> =
+        ontology.messages[0].fields.iter().map(|field| &field.kind).collect();
+    let expected = [&OntologyFieldKind::Text, &OntologyFieldKind::Condition, &OntologyFieldKind::Number];
+    assert_eq!(kinds, expected);
+}
+
 #[test]
 fn a_topic_may_carry_several_messages_but_keeps_each_in_one_way() {
     let (ontology, found) = gathered("[a.State.Ball.x > 0 && a.Data.Ball.x > 1 && a.State.Game.over]", &[]);
