@@ -199,8 +199,13 @@ impl ScenarioBinder<'_> {
             return Ok(Vec::new());
         }
         let publish = |part: Span| {
-            let mut start = part.start;
-            let segments = self.text(part).split('.').map(|segment| {
+            let (mut start, mut is_quoted) = (part.start, false);
+            // the path of a topic in backquotes is one segment
+            let ends_segment = |letter: char| {
+                is_quoted ^= letter == '`';
+                letter == '.' && !is_quoted
+            };
+            let segments = self.text(part).split(ends_segment).map(|segment| {
                 let place = Span::new(start, start + segment.len());
                 start = place.end + 1;
                 Name { text: segment.trim_matches('`').to_owned(), place: TextPosition(place) }

@@ -1,7 +1,8 @@
 use std::sync::Arc;
 
 use proptest::prelude::*;
-use yase::{CompiledChart, Diagnostic, Source, TypeEnvironment};
+use yase::vocabulary::{MessageEntry, TopicEntry, TopicKind};
+use yase::{CompiledChart, Diagnostic, Source, TopicId, TypeEnvironment};
 
 use super::*;
 
@@ -56,6 +57,29 @@ fn a_timer_is_named_and_read() {
         })
         .collect();
     assert_eq!(timers, [ExpectedTimer::Runs(Duration::from_millis(80)), ExpectedTimer::Over]);
+}
+
+/// Two topics end in the same segment, so that only their paths tell them apart.
+#[test]
+fn a_published_topic_is_named_by_its_path() {
+    let topic = |id, path: &str| TopicEntry {
+        id: TopicId(id),
+        path: path.into(),
+        kind: TopicKind::Signal,
+        message: "Kick".into(),
+    };
+    let vocabulary = TypeEnvironment {
+        topics: vec![topic(0, "arm/ball"), topic(1, "soccer/ball")],
+        messages: vec![MessageEntry { name: "Kick".into(), fields: Vec::new() }],
+        ..TypeEnvironment::default()
+    };
+    let text = "model m\nstart\n  publishes `soccer.ball`.Signal.Kick, `arm.ball`.Signal.Kick\n";
+    let (script, found) = ScenarioText::parse(&Source::new("a.scenario", text));
+    assert_eq!(found, []);
+    let steps = script.bind(&chart(), &vocabulary).unwrap();
+    let kind = &steps[0].expected[0].kind;
+    let expected = [TopicId(1), TopicId(0)];
+    assert!(matches!(kind, ExpectationKind::Publishes(topics) if *topics == expected), "{kind:?}");
 }
 
 #[test]
