@@ -19,8 +19,8 @@ use aseme::liveness;
 /// the activities that belong to none.
 ///
 /// The participant of an AIP that is named after a role, or whose name contains `_role`, provides
-/// the formula of that name; a participant without a role becomes a capability with its formulas as
-/// description. A capability in which a role is never the first participant is reported (E0832).
+/// the formula of that name; of several roles that of its whole name or end, and the longest. A
+/// participant without a role becomes a capability with its formulas as description. A capability in which a role is never the first participant is reported (E0832).
 pub fn suc_to_srm(suc: &Suc, aip: Option<&Aip>) -> (SystemRoles, Vec<Diagnostic>) {
     let mut making = SrmBuilder { suc, srm: SystemRoles::default(), diagnostics: Vec::new() };
     let system = suc.roles.iter().enumerate().filter(|(_, role)| role.kind == RoleKind::System);
@@ -53,9 +53,10 @@ impl<'a> SrmBuilder<'a> {
         let mut made = Role { name: name.into(), ..Role::default() };
         for (_, usecase) in own.iter().filter(|(_, usecase)| usecase.includes.is_empty()) {
             let activity = self.activity(&usecase.name, Some(&usecase.specified_by));
-            made.activities.push(activity);
+            if !made.activities.contains(&activity) {
+                made.activities.push(activity);
+            }
         }
-        made.activities.dedup();
         let mut lines = Vec::new();
         for (_, usecase) in own.iter().filter(|(_, usecase)| !usecase.includes.is_empty()) {
             let capability = self.capability(role, usecase);
@@ -152,10 +153,7 @@ impl<'a> SrmBuilder<'a> {
     }
 
     fn participant(&mut self, participant: &Participant) {
-        let plays = |role: &Role| {
-            participant.name == role.name || participant.name.contains(&format!("_{}", role.name))
-        };
-        match self.srm.roles.iter().position(plays) {
+        match self.role_of(&participant.name) {
             Some(_) if participant.liveness.trim().is_empty() => {}
             Some(role) => {
                 let activities = self.activities_of(participant);
@@ -170,6 +168,20 @@ impl<'a> SrmBuilder<'a> {
             }
             None => self.free_participant(participant),
         }
+    }
+
+    /// The role that plays a participant. Of several the one of this name, else of those whose names
+    /// are its end, else of all that it contains the one with the longest name.
+    fn role_of(&self, participant: &str) -> Option<usize> {
+        let fits = |(index, role): (usize, &Role)| {
+            let part = format!("_{}", role.name);
+            let is_same = participant == role.name;
+            let fit = (is_same, participant.ends_with(&part), role.name.len());
+            (is_same || participant.contains(&part)).then_some((fit, index))
+        };
+        // of equal ones the first
+        let roles = self.srm.roles.iter().enumerate().rev();
+        roles.filter_map(fits).max_by_key(|(fit, _)| *fit).map(|(_, index)| index)
     }
 
     /// The activities that the formulas of a participant name.

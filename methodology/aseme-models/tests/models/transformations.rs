@@ -106,6 +106,40 @@ fn a_capability_in_which_a_role_begins_nothing_is_reported() {
 }
 
 #[test]
+fn a_participant_is_of_the_role_that_its_name_ends_in() {
+    let text = "SUC:\nRole: player\n  type = System\nRole: player2\n  type = System\nRole: Play_player\n  type = System\n\
+        UseCase: Walk\n  participants = player, player2, Play_player\n";
+    let Model::Suc(suc) = clean(text) else { panic!("use cases") };
+    let Model::Aip(aip) = clean(
+        "AIP:\nParticipant: Play_player2\n  liveness = Second\nParticipant: Play_player\n  liveness = Whole\n\
+         Participant: Win_player\n  liveness = First\nParticipant: Win_player2_often\n  liveness = Often\n",
+    ) else {
+        panic!("protocols")
+    };
+    let (srm, findings) = transformations::suc_to_srm(&suc, Some(&aip));
+    assert_eq!(findings, []);
+    let formulas: Vec<&str> = srm.roles.iter().map(|role| role.liveness.as_str()).collect();
+    assert_eq!(
+        formulas,
+        [
+            "player=Walk\nWin_player=First\n",
+            "player2=Walk\nPlay_player2=Second\nWin_player2_often=Often\n",
+            "Play_player=Whole\n"
+        ]
+    );
+}
+
+/// Names that differ only in case are one activity, also with another one between them.
+#[test]
+fn an_activity_of_several_use_cases_is_listed_once() {
+    let text = "SUC:\nRole: a\n  type = System\nUseCase: Walk\n  participants = a\n\
+        UseCase: Look\n  participants = a\nUseCase: walk\n  participants = a\n";
+    let Model::Suc(suc) = clean(text) else { panic!("use cases") };
+    let (srm, _) = transformations::suc_to_srm(&suc, None);
+    assert_eq!(srm.roles[0].activities, [0, 1]);
+}
+
+#[test]
 fn a_protocol_becomes_a_chart() {
     let (charts, findings) = transformations::aip_to_eac(&protocols("protocol_chart/in.aip"));
     assert_eq!(findings, []);
