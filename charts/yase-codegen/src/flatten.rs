@@ -43,7 +43,7 @@
 //! | code | what is wrong |
 //! |---|---|
 //! | E0160 | a feature whose result is not known beforehand |
-//! | E0161 | too many configurations or paths |
+//! | E0161 | too many configurations or paths, or conditions on a path |
 //! | E0162 | a livelock |
 
 mod emit_rust;

@@ -15,6 +15,10 @@ use yase_explore::{RowInterner, StepCause, advance_and_step};
 /// Maximum number of steps per possible state.
 const STEPS: usize = 256;
 
+/// Maximum number of conditions that hold on a path: each is one level of nested code, and of
+/// recursion.
+const DEPTH: usize = 256;
+
 /// A name that no expression contains: it represents all other events.
 const OTHER: &str = "?";
 
@@ -80,18 +84,13 @@ impl FlatSearch<'_> {
         if self.steps > most {
             return Err(too_many(format!("it has more than {most} paths")));
         }
-        let mut machine = from.clone();
-        let mut recorder = RecordingHost::new(self.scripts, planned);
-        advance_and_step(&mut machine, cause, Vec::new(), &mut recorder)
-            .map_err(|error| endless(from, &error))?;
-        if !machine.chooser().choices().is_empty() {
-            let message = "a conflict of its transitions is resolved at random".to_owned();
-            return Err(Diagnostic::error("E0160", Span::default(), message));
+        if planned.iter().filter(|holds| **holds).count() > DEPTH {
+            return Err(self.too_deep(from, cause, planned));
         }
-        let to = self.number(machine)?;
+        let (records, to) = self.run(from, cause, planned)?;
         let mut pieces = Vec::new();
         let mut asked = planned.to_vec();
-        for record in records_after(&recorder.records(), planned.len()) {
+        for record in records_after(&records, planned.len()) {
             pieces.push(match *record {
                 RecordedCall::ActionExecuted(action) => FlatOp::Do(action),
                 RecordedCall::ConditionRead(condition) => {
@@ -104,6 +103,34 @@ impl FlatSearch<'_> {
             });
         }
         Ok(without_idle_questions(FlatPath { pieces, to }))
+    }
+
+    /// The calls of a step and its target. The recursion keeps no machine.
+    fn run(
+        &mut self,
+        from: &Machine,
+        cause: &StepCause,
+        planned: &[bool],
+    ) -> Result<(Vec<RecordedCall>, usize), Diagnostic> {
+        let mut machine = from.clone();
+        let mut recorder = RecordingHost::new(self.scripts, planned);
+        advance_and_step(&mut machine, cause, Vec::new(), &mut recorder)
+            .map_err(|error| endless(from, &error))?;
+        if !machine.chooser().choices().is_empty() {
+            let message = "a conflict of its transitions is resolved at random".to_owned();
+            return Err(Diagnostic::error("E0160", Span::default(), message));
+        }
+        Ok((recorder.records(), self.number(machine)?))
+    }
+
+    /// The error of a path on which too many conditions hold: a livelock if it does not end when
+    /// all later ones hold too.
+    fn too_deep(&mut self, from: &Machine, cause: &StepCause, planned: &[bool]) -> Diagnostic {
+        let later = vec![true; DEPTH.saturating_mul(DEPTH)];
+        match self.run(from, cause, &[planned, &later].concat()) {
+            Err(found) => found,
+            Ok(_) => too_many(format!("more than {DEPTH} of its conditions hold on one path")),
+        }
     }
 
     fn number(&mut self, machine: Machine) -> Result<usize, Diagnostic> {

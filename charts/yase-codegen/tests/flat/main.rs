@@ -9,8 +9,8 @@ use yase::expression::{
 };
 use yase::statechart::Statechart;
 use yase::{
-    Activation, ActiveStates, CompiledChart, ConflictResolution, Host, Machine, ScopeId, ScriptContext,
-    Status, Timestamp, TypeEnvironment,
+    Activation, ActiveStates, CompiledChart, ConflictResolution, Host, Machine, Node, NodeKind, ScopeId,
+    ScriptContext, Status, Timestamp, Transition, TypeEnvironment,
 };
 use yase_codegen::flatten::{FlatEvent, FlatMachine, FlatOp, FlatPath, flatten};
 
@@ -318,4 +318,55 @@ fn a_chart_that_was_written_as_rust_runs() {
     host.tired = true;
     state.handle(Stop, &mut host);
     assert_eq!(state.active(), ["Z"]);
+}
+
+/// Regions of one state each, which a condition lets act again and again.
+fn restless(regions: usize) -> Statechart {
+    let mut chart = Statechart::new("restless");
+    let start = chart.add(Statechart::ROOT, Node::new(NodeKind::Start, ""));
+    let and = chart.add(Statechart::ROOT, Node::new(NodeKind::And, "all"));
+    chart.connect(Transition::new(start, and));
+    for number in 0..regions {
+        let region = chart.add(and, Node::new(NodeKind::Or, format!("r{number}")));
+        let start = chart.add(region, Node::new(NodeKind::Start, ""));
+        let state = chart.add(region, Node::new(NodeKind::Basic, format!("s{number}")));
+        chart.connect(Transition::new(start, state));
+        let text = format!("[script(\"c{number}\")] / script(\"act{number}\")");
+        let (expression, found) = yase::expression::parse_transition(&text);
+        assert_eq!(found, []);
+        chart.connect(Transition { expression, ..Transition::new(state, state) });
+    }
+    chart
+}
+
+/// Each condition that holds is one level of the search.
+#[test]
+fn a_step_in_which_conditions_hold_without_end_is_a_livelock() {
+    for regions in [1, 3, 16] {
+        let found = flatten(&restless(regions), yase::Semantics::yase(), 1_000).expect_err("it is endless");
+        let codes: Vec<&str> = found.iter().map(|it| it.code).collect();
+        assert_eq!(codes, ["E0162"], "{regions}: {found:?}");
+    }
+}
+
+#[test]
+fn a_path_with_too_many_conditions_is_refused() {
+    let chart = |length: usize| {
+        let mut chart = Statechart::new("long");
+        let mut last = chart.add(Statechart::ROOT, Node::new(NodeKind::Start, ""));
+        for number in 0..=length {
+            let next = chart.add(Statechart::ROOT, Node::new(NodeKind::Basic, format!("s{number}")));
+            let guard = format!("[script(\"c{number}\")]");
+            let text = if number == 0 { "" } else { &guard };
+            let expression = yase::expression::parse_transition(text).0;
+            chart.connect(Transition { expression, ..Transition::new(last, next) });
+            last = next;
+        }
+        chart
+    };
+    let flat = flatten(&chart(250), yase::Semantics::yase(), 1_000).expect("it is not too long");
+    assert!(flat.to_rust().contains("c249"));
+    let found = flatten(&chart(400), yase::Semantics::yase(), 1_000).expect_err("it is too long");
+    let messages: Vec<(&str, &str)> = found.iter().map(|it| (it.code, it.message.as_str())).collect();
+    assert_eq!(messages, [("E0161", "more than 256 of its conditions hold on one path")]);
 }
