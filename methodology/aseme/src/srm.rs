@@ -232,9 +232,6 @@ pub struct SrmEntry {
 }
 
 /// A role's file: the text, the role, and the spans of its entries.
-///
-/// Tools change a file by [`replace_entry`](SrmFile::replace_entry), which keeps the remaining text
-/// including comments.
 #[derive(Clone, PartialEq, Debug)]
 pub struct SrmFile {
     text: String,
@@ -270,15 +267,6 @@ impl SrmFile {
     /// state. XMI has none.
     pub fn entries(&self) -> &[SrmEntry] {
         &self.entries
-    }
-
-    /// The file with an entry replaced by another text. Comments between the lines of the entry
-    /// move above it.
-    pub fn replace_entry(&self, entry: SrmEntry, replacement: &str) -> (SrmFile, Vec<Diagnostic>) {
-        let Span { start, end } = entry.span;
-        let comments = text::comments_within(&self.text, entry.span).into_iter();
-        let comments: String = comments.map(|comment| format!("{comment}\n")).collect();
-        SrmFile::parse([&self.text[..start], &comments, replacement, &self.text[end..]].concat())
     }
 }
 
