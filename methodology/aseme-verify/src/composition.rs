@@ -154,11 +154,11 @@ fn robots(
     if !wrong.is_empty() {
         return Err(wrong);
     }
-    let said = charts.iter().map(|(subject, _)| composed_robot::messages_to_send(&subject.chart, world));
-    let said: Vec<Vec<SentMessage>> = said.collect();
+    let sent = charts.iter().map(|(subject, _)| composed_robot::messages_to_send(&subject.chart, world));
+    let sent: Vec<Vec<SentMessage>> = sent.collect();
     let robots = models.iter().zip(charts).enumerate().map(|(number, ((name, source), chart))| {
         let beside = (0..models.len()).filter(|&other| other != number && hosts[other] == hosts[number]);
-        let beside = beside.flat_map(|other| said[other].iter().map(|it| it.word.clone())).collect();
+        let beside = beside.flat_map(|other| sent[other].iter().map(|it| it.word.clone())).collect();
         let neighbourhood = Neighbourhood { host: hosts[number], hosts, beside };
         ComposedRobot::new(name, source, chart, neighbourhood, world)
     });
@@ -181,12 +181,12 @@ fn behaviours(
     passages: &[MessageRoute],
     settings: &CheckSettings,
 ) -> Vec<Behaviour> {
-    let is_heard = |number: usize, saying: usize| {
-        passages.iter().any(|passage| passage.from == number && passage.sent_message == saying)
+    let is_read = |number: usize, message: usize| {
+        passages.iter().any(|passage| passage.from == number && passage.sent_message == message)
     };
     let explored = |(number, robot): (usize, &ComposedRobot)| {
-        let heard: Vec<bool> = (0..robot.sent.len()).map(|saying| is_heard(number, saying)).collect();
-        robot.explored(settings, &heard)
+        let read: Vec<bool> = (0..robot.sent.len()).map(|message| is_read(number, message)).collect();
+        robot.explored(settings, &read)
     };
     robots.iter().enumerate().map(explored).collect()
 }
@@ -213,21 +213,21 @@ fn unsent_messages<'a>(
     passages: &'a [MessageRoute],
 ) -> impl Iterator<Item = Diagnostic> + 'a {
     robots.iter().enumerate().flat_map(move |(to, robot)| {
-        let is_said = move |hearing: usize| {
-            passages.iter().any(|it| it.to == to && it.received_messages.contains(&hearing))
+        let is_sent = move |message: usize| {
+            passages.iter().any(|it| it.to == to && it.received_messages.contains(&message))
         };
-        let unsaid = robot.received.iter().enumerate().filter(move |(hearing, _)| !is_said(*hearing));
-        unsaid.map(|(_, hearing)| no_sender(robot, hearing))
+        let unsent = robot.received.iter().enumerate().filter(move |(message, _)| !is_sent(*message));
+        unsent.map(|(_, message)| no_sender(robot, message))
     })
 }
 
-fn no_sender(robot: &ComposedRobot, hearing: &ReceivedMessage) -> Diagnostic {
-    let (host, name) = (&hearing.called.host, hearing.called.word.name());
+fn no_sender(robot: &ComposedRobot, received: &ReceivedMessage) -> Diagnostic {
+    let (host, name) = (&received.called.host, received.called.word.name());
     let message = format!(
         "the chart of `{host}` does not send `{name}`, which `{}` waits for: it is assumed to arrive at any time",
         robot.name
     );
-    let found = Diagnostic::warning("E0934", robot.subject.places.transition(hearing.way), message);
+    let found = Diagnostic::warning("E0934", robot.subject.places.transition(received.way), message);
     found.with_hint("`--linked` takes the topics of activities from the program").in_source(&robot.source)
 }
 
@@ -289,8 +289,8 @@ fn trace_to_edge(product: &GlobalProduct<'_>, edge: usize) -> Option<String> {
 fn dropped(product: &GlobalProduct<'_>, passage: usize, edge: usize) -> Finding {
     let (from, to, name) = route_names(product.robots, &product.passages[passage]);
     let robot = &product.robots[product.passages[passage].to];
-    let hearing = product.passages[passage].waited.and_then(|hearing| robot.received.get(hearing));
-    let place = hearing.map_or(Span::default(), |hearing| robot.subject.places.transition(hearing.way));
+    let received = product.passages[passage].waited.and_then(|message| robot.received.get(message));
+    let place = received.map_or(Span::default(), |received| robot.subject.places.transition(received.way));
     let message = format!("`{name}` of `{from}` may arrive at `{to}` where no state reads it, and is lost");
     let found = Diagnostic::warning("E0931", place, message);
     let hint = "defer it in the states before, or wait for it there";

@@ -97,18 +97,18 @@ impl ComposedRobot {
         world: Option<&ProgramSymbols>,
     ) -> ComposedRobot {
         let host = neighbourhood.host.to_owned();
-        let ears = MessageFilter::new(neighbourhood, &subject.chart, world);
-        let hearings = received_messages(&subject.chart, &ears);
-        let waits = waits(&subject, &hearings, &ears);
-        let sayings = messages_to_send(&subject.chart, world);
+        let filter = MessageFilter::new(neighbourhood, &subject.chart, world);
+        let received = received_messages(&subject.chart, &filter);
+        let waits = waits(&subject, &received, &filter);
+        let sent = messages_to_send(&subject.chart, world);
         ComposedRobot {
             name: name.into(),
             host,
             source: source.clone(),
             subject,
             abstraction,
-            received: hearings,
-            sent: sayings,
+            received,
+            sent,
             waits,
         }
     }
@@ -124,30 +124,31 @@ impl ComposedRobot {
                     && that.called.word.means(&it.called.word)
             })
         });
-        twice.map(|(_, hearing)| {
-            let message = format!("`{}` is awaited under two names", hearing.called.prefix.text());
-            let found = Diagnostic::error("E0935", self.subject.places.transition(hearing.way), message);
+        twice.map(|(_, message)| {
+            let text = format!("`{}` is awaited under two names", message.called.prefix.text());
+            let found = Diagnostic::error("E0935", self.subject.places.transition(message.way), text);
             found.with_hint("use the same notation in each trigger").in_source(&self.source)
         })
     }
 
-    /// Explores the chart. Only sent messages that other robots read are observable.
-    pub(crate) fn explored(&self, settings: &CheckSettings, heard: &[bool]) -> Behaviour {
+    /// Explores the chart. Only sent messages that other robots read are observable: `read` says of
+    /// each whether they do.
+    pub(crate) fn explored(&self, settings: &CheckSettings, read: &[bool]) -> Behaviour {
         let scripts = self.scripts_on_messages();
-        let mut deeds: Vec<StepInterface> = vec![StepInterface::default()];
+        let mut interfaces: Vec<StepInterface> = vec![StepInterface::default()];
         let mut numbers: BTreeMap<StepInterface, u64> = BTreeMap::from([(StepInterface::default(), 0)]);
         let letter = |seen: &StepObservation<'_>| {
-            let deed = self.deed(seen, &scripts, (settings.world.as_ref(), heard));
-            *numbers.entry(deed).or_insert_with_key(|deed| {
-                deeds.push(deed.clone());
-                deeds.len() as u64 - 1
+            let interface = self.step_interface(seen, &scripts, (settings.world.as_ref(), read));
+            *numbers.entry(interface).or_insert_with_key(|interface| {
+                interfaces.push(interface.clone());
+                interfaces.len() as u64 - 1
             })
         };
         let mut surroundings = self.abstraction.surroundings();
         surroundings.messages = true;
         let mut asked = StepLabeler {
             conditions: 0,
-            idle: self.idle_regions(heard),
+            idle: self.idle_regions(read),
             pace: None,
             letter: Box::new(letter),
         };
@@ -155,19 +156,20 @@ impl ComposedRobot {
         let found =
             explore_labelled(&self.abstraction.chart, &mut surroundings, &mut asked, settings.limits());
         drop((asked, surroundings));
-        Behaviour { idle, ..Behaviour::new(found, deeds, &self.waits) }
+        Behaviour { idle, ..Behaviour::new(found, interfaces, &self.waits) }
     }
 
     /// The regions without effect on other robots, or on regions with such an effect.
-    fn idle_regions(&self, heard: &[bool]) -> Vec<NodeId> {
+    fn idle_regions(&self, read: &[bool]) -> Vec<NodeId> {
         let chart = self.abstraction.chart.statechart();
-        let said = self.sent.iter().zip(heard).filter(|(_, heard)| **heard);
-        let spoken = said.flat_map(|(saying, _)| &saying.places).map(|place| match *place {
+        let sent = self.sent.iter().zip(read).filter(|(_, is_read)| **is_read);
+        let sending = sent.flat_map(|(message, _)| &message.places).map(|place| match *place {
             MessageUse::Way(way) => chart.transition(way).source,
             MessageUse::Node(node) => node,
         });
-        let heard = self.received.iter().map(|hearing| chart.transition(hearing.way).source);
-        let nodes: Vec<NodeId> = spoken.chain(heard).chain(self.waits.iter().map(|wait| wait.node)).collect();
+        let receiving = self.received.iter().map(|message| chart.transition(message.way).source);
+        let nodes: Vec<NodeId> =
+            sending.chain(receiving).chain(self.waits.iter().map(|wait| wait.node)).collect();
         cone_of_influence::idle_but(chart, &|region| {
             nodes.iter().any(|&node| cone_of_influence::is_within(chart, node, region))
         })
@@ -183,33 +185,33 @@ impl ComposedRobot {
         self.abstraction.conditions.iter().map(|condition| condition.as_ref().is_some_and(reads)).collect()
     }
 
-    fn deed(
+    fn step_interface(
         &self,
         seen: &StepObservation<'_>,
         scripts: &[bool],
-        said: (Option<&ProgramSymbols>, &[bool]),
+        known: (Option<&ProgramSymbols>, &[bool]),
     ) -> StepInterface {
-        let hears = match seen.cause {
+        let receives = match seen.cause {
             StepCause::Event(name) => self.received.iter().position(|it| it.event.as_ref() == Some(name)),
             _ => None,
         };
-        let event = hears
-            .and_then(|hearing| self.abstraction.chart.events().find(self.received[hearing].event.as_ref()?));
-        let mut asks: Vec<(ScriptId, bool)> = seen
+        let event = receives
+            .and_then(|message| self.abstraction.chart.events().find(self.received[message].event.as_ref()?));
+        let mut conditions: Vec<(ScriptId, bool)> = seen
             .decisions
             .iter()
             .copied()
             .filter(|(script, _)| scripts.get(script.0 as usize) == Some(&true))
             .collect();
-        asks.sort_unstable();
-        asks.dedup();
-        let leaves = (0..self.waits.len()).filter(|&wait| seen.left.contains(&self.waits[wait].node));
+        conditions.sort_unstable();
+        conditions.dedup();
+        let exited = (0..self.waits.len()).filter(|&wait| seen.left.contains(&self.waits[wait].node));
         StepInterface {
-            receives: hears,
+            receives,
             drops: event.is_some_and(|event| seen.dropped.contains(&event)),
-            conditions: asks,
-            sends: self.sent_messages(seen, said),
-            exited_waits: leaves.collect(),
+            conditions,
+            sends: self.sent_messages(seen, known),
+            exited_waits: exited.collect(),
         }
     }
 
@@ -218,20 +220,20 @@ impl ComposedRobot {
     fn sent_messages(
         &self,
         seen: &StepObservation<'_>,
-        (world, heard): (Option<&ProgramSymbols>, &[bool]),
+        (world, read): (Option<&ProgramSymbols>, &[bool]),
     ) -> Vec<(usize, Vec<FieldSetting>)> {
         let chart = &self.subject.chart;
         let of_exits = seen.left.iter().flat_map(|&node| &chart.node(node).exit);
         let of_ways = seen.taken.iter().flat_map(|&way| &chart.transition(way).expression.actions);
         let of_entries = seen.entered.iter().flat_map(|&node| &chart.node(node).entry);
-        let mut says: BTreeMap<usize, BTreeMap<String, Option<String>>> = BTreeMap::new();
+        let mut sends: BTreeMap<usize, BTreeMap<String, Option<String>>> = BTreeMap::new();
         for (word, setting) in of_exits
             .chain(of_ways)
             .chain(of_entries)
             .filter_map(|it| message_names::message_written(it, world))
         {
-            let Some(saying) = self.sent_message_index(&word) else { continue };
-            let fields = says.entry(saying).or_default();
+            let Some(message) = self.sent_message_index(&word) else { continue };
+            let fields = sends.entry(message).or_default();
             fields.extend(setting.map(|(field, value)| (field, literal(&value, &chart.constants))));
         }
         let returned = match seen.cause {
@@ -240,12 +242,12 @@ impl ComposedRobot {
         };
         let by_activity =
             returned.map(|activity| message_names::messages_written_by(activity, world)).unwrap_or_default();
-        for saying in by_activity.iter().filter_map(|word| self.sent_message_index(word)) {
+        for message in by_activity.iter().filter_map(|word| self.sent_message_index(word)) {
             // the fields of a message written by an activity are unknown
-            says.entry(saying).or_default().insert(String::new(), None);
+            sends.entry(message).or_default().insert(String::new(), None);
         }
-        says.retain(|&saying, _| heard.get(saying) == Some(&true));
-        says.into_iter().map(|(saying, fields)| (saying, fields.into_iter().collect())).collect()
+        sends.retain(|&message, _| read.get(message) == Some(&true));
+        sends.into_iter().map(|(message, fields)| (message, fields.into_iter().collect())).collect()
     }
 
     fn sent_message_index(&self, word: &MessageName) -> Option<usize> {
@@ -286,14 +288,14 @@ pub(crate) struct Neighbourhood<'a> {
     pub(crate) host: &'a str,
     /// The hosts of all robots.
     pub(crate) hosts: &'a [&'a str],
-    /// What other agents on the same host say.
+    /// The messages that other agents on the same host send.
     pub(crate) beside: Vec<MessageName>,
 }
 
 /// What a chart's paths may be about: messages of robots, itself among them.
 struct MessageFilter<'a> {
     neighbourhood: Neighbourhood<'a>,
-    /// What its actions say.
+    /// The messages that its actions send.
     sent: Vec<MessageName>,
     world: Option<&'a ProgramSymbols>,
 }
@@ -304,9 +306,9 @@ impl<'a> MessageFilter<'a> {
         chart: &Statechart,
         world: Option<&'a ProgramSymbols>,
     ) -> MessageFilter<'a> {
-        let said = actions(chart)
+        let sent = actions(chart)
             .filter_map(|(_, action)| message_names::message_written(action, world).map(|(word, _)| word));
-        MessageFilter { neighbourhood, sent: said.collect(), world }
+        MessageFilter { neighbourhood, sent: sent.collect(), world }
     }
 
     /// The message that a condition reads: of a named host, or without a name of another agent on
@@ -322,17 +324,18 @@ impl<'a> MessageFilter<'a> {
         self.read(path).or_else(|| self.without_host(path, &self.sent))
     }
 
-    fn without_host(&self, path: &yase::expression::Path, said: &[MessageName]) -> Option<MessageReference> {
+    fn without_host(&self, path: &yase::expression::Path, sent: &[MessageName]) -> Option<MessageReference> {
         let called = message_names::own(path, self.neighbourhood.host, self.world)?;
-        said.iter().any(|said| said.means(&called.word)).then_some(called)
+        sent.iter().any(|message| message.means(&called.word)).then_some(called)
     }
 }
 
-fn received_messages(chart: &Statechart, ears: &MessageFilter<'_>) -> Vec<ReceivedMessage> {
+fn received_messages(chart: &Statechart, filter: &MessageFilter<'_>) -> Vec<ReceivedMessage> {
     let mut found: Vec<ReceivedMessage> = Vec::new();
     for (way, transition) in chart.transitions() {
-        let waited = triggers(transition).iter().map(|path| (ears.awaited_message(path), Some(path.text())));
-        let read = transition.expression.guard.iter().flat_map(paths).map(|path| (ears.read(path), None));
+        let waited =
+            triggers(transition).iter().map(|path| (filter.awaited_message(path), Some(path.text())));
+        let read = transition.expression.guard.iter().flat_map(paths).map(|path| (filter.read(path), None));
         for (called, event) in waited.chain(read) {
             let Some(called) = called else { continue };
             match found.iter_mut().find(|it| it.called.prefix == called.prefix) {
@@ -351,9 +354,9 @@ pub(crate) fn messages_to_send(chart: &Statechart, world: Option<&ProgramSymbols
         message_names::message_written(action, world).map(|(word, _)| (place, word))
     });
     let by_activities = chart.nodes().flat_map(|(id, node)| {
-        let said =
+        let sent =
             node.activity.iter().flat_map(|activity| message_names::messages_written_by(activity, world));
-        said.map(move |word| (MessageUse::Node(id), word)).collect::<Vec<_>>()
+        sent.map(move |word| (MessageUse::Node(id), word)).collect::<Vec<_>>()
     });
     for (place, word) in by_actions.chain(by_activities) {
         match found.iter_mut().find(|it| it.word == word) {
@@ -368,19 +371,19 @@ pub(crate) fn messages_to_send(chart: &Statechart, world: Option<&ProgramSymbols
 /// composites.
 fn waits(
     subject: &CheckedModel,
-    hearings: &[ReceivedMessage],
-    ears: &MessageFilter<'_>,
+    received: &[ReceivedMessage],
+    filter: &MessageFilter<'_>,
 ) -> Vec<WaitingState> {
     let mut found: Vec<WaitingState> = Vec::new();
     for (way, transition) in subject.chart.transitions() {
-        let waited = triggers(transition).iter().filter_map(|path| ears.awaited_message(path));
-        let read = transition.expression.guard.iter().flat_map(paths).filter_map(|path| ears.read(path));
+        let waited = triggers(transition).iter().filter_map(|path| filter.awaited_message(path));
+        let read = transition.expression.guard.iter().flat_map(paths).filter_map(|path| filter.read(path));
         let named = waited.chain(read).next();
-        let heard = named.and_then(|called| hearings.iter().position(|it| it.called.prefix == called.prefix));
-        let Some(hearing) = heard else { continue };
+        let named = named.and_then(|called| received.iter().position(|it| it.called.prefix == called.prefix));
+        let Some(received_message) = named else { continue };
         for node in stable_nodes(subject, transition.source) {
             if !found.iter().any(|wait| wait.node == node) {
-                found.push(WaitingState { node, received_message: hearing, way });
+                found.push(WaitingState { node, received_message, way });
             }
         }
     }
@@ -434,19 +437,22 @@ pub(crate) struct Behaviour {
 }
 
 impl Behaviour {
-    fn new(found: LabelledGraph, deeds: Vec<StepInterface>, waits: &[WaitingState]) -> Behaviour {
+    fn new(found: LabelledGraph, step_interfaces: Vec<StepInterface>, waits: &[WaitingState]) -> Behaviour {
         let begin = found.states().len();
         let mut full = Graph { initial: vec![begin], ends: Vec::new(), ways: vec![Vec::new(); begin + 1] };
         full.ends = found.states().iter().map(|it| it.status != Status::Running).chain([false]).collect();
         for (edge, step) in found.steps().iter().enumerate() {
-            let deed = &deeds[step.letter as usize];
-            let shows =
-                if deed.is_seen() { Observable::Letter(step.letter as u32) } else { Observable::Nothing };
+            let interface = &step_interfaces[step.letter as usize];
+            let shows = if interface.is_seen() {
+                Observable::Letter(step.letter as u32)
+            } else {
+                Observable::Nothing
+            };
             let from = step.from.unwrap_or(begin);
             if from != step.to
-                || deed.receives.is_some()
-                || !deed.sends.is_empty()
-                || !deed.exited_waits.is_empty()
+                || interface.receives.is_some()
+                || !interface.sends.is_empty()
+                || !interface.exited_waits.is_empty()
             {
                 full.ways[from].push(LabelledEdge { observable: shows, to: step.to, edge });
             }
@@ -466,9 +472,9 @@ impl Behaviour {
         for (state, &class) in classes.iter().enumerate() {
             by_class[class].clone_from(&waiting[state]);
         }
-        let may_end = (0..waits.len()).map(|wait| wait_end_classes(&graph, &deeds, wait)).collect();
+        let may_end = (0..waits.len()).map(|wait| wait_end_classes(&graph, &step_interfaces, wait)).collect();
         let idle = Vec::new();
-        Behaviour { found, idle, step_interfaces: deeds, full, classes, graph, waiting: by_class, may_end }
+        Behaviour { found, idle, step_interfaces, full, classes, graph, waiting: by_class, may_end }
     }
 
     /// The class before the start.
@@ -482,7 +488,7 @@ impl Behaviour {
     }
 
     /// The effects of an edge on other robots.
-    pub(crate) fn deed(&self, way: &LabelledEdge) -> &StepInterface {
+    pub(crate) fn step_interface(&self, way: &LabelledEdge) -> &StepInterface {
         match way.observable {
             Observable::Letter(letter) => &self.step_interfaces[letter as usize],
             Observable::Nothing | Observable::Other => &self.step_interfaces[0],
@@ -536,9 +542,9 @@ fn first_classes(full: &Graph, waiting: &[Vec<usize>], begin: usize) -> Vec<usiz
 }
 
 /// The classes from which a wait can end on some path.
-fn wait_end_classes(graph: &Graph, deeds: &[StepInterface], wait: usize) -> Vec<bool> {
+fn wait_end_classes(graph: &Graph, step_interfaces: &[StepInterface], wait: usize) -> Vec<bool> {
     let ends = |way: &LabelledEdge| match way.observable {
-        Observable::Letter(letter) => deeds[letter as usize].exited_waits.contains(&wait),
+        Observable::Letter(letter) => step_interfaces[letter as usize].exited_waits.contains(&wait),
         Observable::Nothing | Observable::Other => false,
     };
     let mut before = vec![Vec::new(); graph.ways.len()];

@@ -22,11 +22,11 @@ pub(crate) fn confirm(
 ) -> Result<(), String> {
     (0..product.robots.len()).try_for_each(|robot| {
         let (robot_name, abstraction) = (&product.robots[robot].name, &product.robots[robot].abstraction);
-        let is_heard = |path: &Path| {
-            let heard = product.robots[robot].received.iter();
-            heard.map(|it| &it.called.prefix).any(|it| crate::abstraction::may_be_one_message(it, path))
+        let is_received = |path: &Path| {
+            let received = product.robots[robot].received.iter();
+            received.map(|it| &it.called.prefix).any(|it| crate::abstraction::may_be_one_message(it, path))
         };
-        let is_own = |path: &Path| abstraction.is_assigned(path) && !is_heard(path);
+        let is_own = |path: &Path| abstraction.is_assigned(path) && !is_received(path);
         let others = |path: &Path| settings.world.as_ref().is_some_and(|world| world.may_publish(path));
         let alone = replayed(product, state, robot, &is_own);
         let with_others = || replayed(product, state, robot, &|path| is_own(path) && !others(path));
@@ -89,15 +89,15 @@ fn routes_to<'p>(
 
 /// Of two messages under one name it is not known which came last.
 fn is_only_route(product: &GlobalProduct<'_>, robot: usize, number: usize) -> bool {
-    let heard = &product.passages[number].received_messages;
+    let received = &product.passages[number].received_messages;
     let others = routes_to(product, robot).filter(|(other, _)| *other != number);
-    others.into_iter().all(|(_, route)| route.received_messages.iter().all(|it| !heard.contains(it)))
+    others.into_iter().all(|(_, route)| route.received_messages.iter().all(|it| !received.contains(it)))
 }
 
 /// What a robot calls the message of a route.
 fn prefixes(robot: &ComposedRobot, route: &MessageRoute) -> impl Iterator<Item = Path> {
-    let heard = route.received_messages.iter();
-    heard.map(|&it| robot.received[it].called.prefix.clone()).collect::<Vec<_>>().into_iter()
+    let received = route.received_messages.iter();
+    received.map(|&it| robot.received[it].called.prefix.clone()).collect::<Vec<_>>().into_iter()
 }
 
 /// A message that arrives, and what is known of it.

@@ -82,14 +82,14 @@ impl<'a> ContentTable<'a> {
     /// The known field values as conditions in the notation of a robot.
     fn facts(&self, robot: usize, newest: &[u32]) -> Vec<Expression> {
         let mut facts = Vec::new();
-        for (hearing, heard) in self.robots[robot].received.iter().enumerate() {
+        for (message, received) in self.robots[robot].received.iter().enumerate() {
             let mut coming =
                 self.passages.iter().zip(newest).filter(|(passage, _)| {
-                    passage.to == robot && passage.received_messages.contains(&hearing)
+                    passage.to == robot && passage.received_messages.contains(&message)
                 });
             // the order of two messages with one name is unknown
             if let (Some((_, &content)), None) = (coming.next(), coming.next()) {
-                self.add_facts(&heard.called.prefix, content, &mut facts);
+                self.add_facts(&received.called.prefix, content, &mut facts);
             }
         }
         facts

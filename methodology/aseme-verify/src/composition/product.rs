@@ -31,30 +31,24 @@ pub(crate) struct MessageRoute {
 pub(crate) fn passages(robots: &[ComposedRobot]) -> Vec<MessageRoute> {
     let mut found: Vec<MessageRoute> = Vec::new();
     let mut channels: Vec<(usize, usize)> = Vec::new();
-    for (to, hearer) in robots.iter().enumerate() {
-        for (from, speaker) in robots.iter().enumerate() {
-            for (saying, said) in speaker.sent.iter().enumerate() {
-                let hears = |&hearing: &usize| {
-                    let called = &hearer.received[hearing].called;
-                    called.host == speaker.host && called.word.means(&said.word)
+    for (to, receiver) in robots.iter().enumerate() {
+        for (from, sender) in robots.iter().enumerate() {
+            for (sent_message, sent) in sender.sent.iter().enumerate() {
+                let is_same = |&received: &usize| {
+                    let called = &receiver.received[received].called;
+                    called.host == sender.host && called.word.means(&sent.word)
                 };
-                let hearings: Vec<usize> = (0..hearer.received.len()).filter(hears).collect();
-                if hearings.is_empty() {
+                let received_messages: Vec<usize> = (0..receiver.received.len()).filter(is_same).collect();
+                if received_messages.is_empty() {
                     continue;
                 }
                 let channel = channels.iter().position(|it| *it == (from, to)).unwrap_or_else(|| {
                     channels.push((from, to));
                     channels.len() - 1
                 });
-                let waited = hearings.iter().copied().find(|&it| hearer.received[it].event.is_some());
-                found.push(MessageRoute {
-                    from,
-                    sent_message: saying,
-                    to,
-                    received_messages: hearings,
-                    waited,
-                    channel,
-                });
+                let waited =
+                    received_messages.iter().copied().find(|&it| receiver.received[it].event.is_some());
+                found.push(MessageRoute { from, sent_message, to, received_messages, waited, channel });
             }
         }
     }
@@ -66,9 +60,9 @@ pub(crate) fn passages(robots: &[ComposedRobot]) -> Vec<MessageRoute> {
 pub(crate) struct GlobalState {
     /// The class of each robot.
     pub(crate) classes: Vec<usize>,
-    /// What each has heard last, by passage.
+    /// The content that each has received last, by passage.
     pub(crate) newest: Vec<u32>,
-    /// What was said last, by passage.
+    /// The content that was sent last, by passage.
     last_sent: Vec<u32>,
     /// The messages in transit, by channel: routes and contents.
     channels: Vec<Vec<(usize, u32)>>,
@@ -241,9 +235,9 @@ impl<'a> CompositionSearch<'a> {
     fn own_steps(&mut self, global: &GlobalState, robot: usize, found: &mut Vec<GlobalSuccessor>) {
         let behaviours = self.found.behaviours;
         for &way in &behaviours[robot].graph.ways[global.classes[robot]] {
-            let deed = behaviours[robot].deed(&way);
-            let comes_by_channel = deed.receives.is_some_and(|hearing| self.is_routed(robot, hearing));
-            if comes_by_channel || !self.found.contents.allow(robot, &deed.conditions, &global.newest) {
+            let interface = behaviours[robot].step_interface(&way);
+            let comes_by_channel = interface.receives.is_some_and(|message| self.is_routed(robot, message));
+            if comes_by_channel || !self.found.contents.allow(robot, &interface.conditions, &global.newest) {
                 continue;
             }
             let (global, crowded) = self.apply_step(global.clone(), robot, way);
@@ -256,9 +250,9 @@ impl<'a> CompositionSearch<'a> {
         }
     }
 
-    /// Whether another robot receives a message of a robot.
-    fn is_routed(&self, robot: usize, hearing: usize) -> bool {
-        self.found.passages.iter().any(|it| it.to == robot && it.received_messages.contains(&hearing))
+    /// Whether a robot sends a message that a robot receives.
+    fn is_routed(&self, robot: usize, message: usize) -> bool {
+        self.found.passages.iter().any(|it| it.to == robot && it.received_messages.contains(&message))
     }
 
     /// The arrivals that are possible next in a channel. If the chart already holds a message of
@@ -281,11 +275,11 @@ impl<'a> CompositionSearch<'a> {
         }
         let (behaviours, to) = (self.found.behaviours, self.found.passages[passage].to);
         for way in ways {
-            let deed = behaviours[to].deed(&way);
-            if self.found.contents.allow(to, &deed.conditions, &there.newest) {
+            let interface = behaviours[to].step_interface(&way);
+            if self.found.contents.allow(to, &interface.conditions, &there.newest) {
                 let (global, crowded) = self.apply_step(there.clone(), to, way);
                 let by = GlobalEvent::Arrival { passage, way: Some(way) };
-                found.push(GlobalSuccessor { global, by, is_dropped: deed.drops, crowded });
+                found.push(GlobalSuccessor { global, by, is_dropped: interface.drops, crowded });
             }
         }
     }
@@ -294,8 +288,9 @@ impl<'a> CompositionSearch<'a> {
     fn receiving_steps(&self, global: &GlobalState, passage: usize) -> Vec<LabelledEdge> {
         let &MessageRoute { to, waited, .. } = &self.found.passages[passage];
         let behaviour = &self.found.behaviours[to];
-        let hears = |way: &&LabelledEdge| waited.is_some() && behaviour.deed(way).receives == waited;
-        behaviour.graph.ways[global.classes[to]].iter().filter(hears).copied().collect()
+        let receives =
+            |way: &&LabelledEdge| waited.is_some() && behaviour.step_interface(way).receives == waited;
+        behaviour.graph.ways[global.classes[to]].iter().filter(receives).copied().collect()
     }
 
     /// Whether the chart already holds a message of the kind, so that it is offered no other. A
@@ -317,8 +312,8 @@ impl<'a> CompositionSearch<'a> {
         let behaviours = self.found.behaviours;
         global.classes[robot] = way.to;
         let mut crowded = None;
-        for (saying, settings) in &behaviours[robot].deed(&way).sends {
-            crowded = crowded.or(self.send(&mut global, robot, *saying, settings));
+        for (message, settings) in &behaviours[robot].step_interface(&way).sends {
+            crowded = crowded.or(self.send(&mut global, robot, *message, settings));
         }
         (global, crowded)
     }
@@ -327,12 +322,12 @@ impl<'a> CompositionSearch<'a> {
         &mut self,
         global: &mut GlobalState,
         robot: usize,
-        saying: usize,
+        message: usize,
         settings: &[FieldSetting],
     ) -> Option<usize> {
         let mut lost = None;
         let passages = self.found.passages;
-        let meant = |it: &(usize, &MessageRoute)| it.1.from == robot && it.1.sent_message == saying;
+        let meant = |it: &(usize, &MessageRoute)| it.1.from == robot && it.1.sent_message == message;
         for (number, passage) in passages.iter().enumerate().filter(meant) {
             let content = self.found.contents.changed(global.last_sent[number], settings);
             global.last_sent[number] = content;
@@ -387,19 +382,19 @@ impl GlobalProduct<'_> {
             match *happening {
                 GlobalEvent::Step { robot, way } => self.write_step(robot, way, &mut at, &mut text),
                 GlobalEvent::Arrival { passage, way } => {
-                    let MessageRoute { from, sent_message: saying, to, .. } = &self.passages[passage];
-                    let (from, to, name) = (&self.robots[*from], *to, *saying);
-                    let said = from.sent[name].word.name();
-                    text += &format!("# `{said}` of {} comes to {}\n", from.name, self.robots[to].name);
+                    let &MessageRoute { from, sent_message, to, .. } = &self.passages[passage];
+                    let from = &self.robots[from];
+                    let message = from.sent[sent_message].word.name();
+                    text += &format!("# `{message}` of {} comes to {}\n", from.name, self.robots[to].name);
                     if let Some(way) = way {
                         self.write_step(to, way, &mut at, &mut text);
                     }
                 }
                 GlobalEvent::Loss { passage } => {
-                    let MessageRoute { from, sent_message: saying, to, .. } = &self.passages[passage];
-                    let said = self.robots[*from].sent[*saying].word.name();
+                    let MessageRoute { from, sent_message, to, .. } = &self.passages[passage];
+                    let message = self.robots[*from].sent[*sent_message].word.name();
                     let (from, to) = (&self.robots[*from].name, &self.robots[*to].name);
-                    text += &format!("# `{said}` of {from} to {to} is lost\n");
+                    text += &format!("# `{message}` of {from} to {to} is lost\n");
                 }
             }
         }
@@ -419,8 +414,8 @@ impl GlobalProduct<'_> {
         {
             *text += &format!("{name}: {}", trace.text_of(step));
         }
-        for (saying, _) in &behaviour.deed(&way).sends {
-            *text += &format!("  # says `{}`\n", self.robots[robot].sent[*saying].word.name());
+        for (message, _) in &behaviour.step_interface(&way).sends {
+            *text += &format!("  # says `{}`\n", self.robots[robot].sent[*message].word.name());
         }
     }
 }
