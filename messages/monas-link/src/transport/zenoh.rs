@@ -165,7 +165,7 @@ fn payload(payload: &ZBytes) -> MessageBytes {
         return payload.to_bytes().into_owned().into();
     }
     let (lent, asked) = (Shared(payload.clone()), payload.clone());
-    MessageBytes::lent(lent, move || asked.as_shm().is_some_and(|memory| memory.is_valid()))
+    MessageBytes::from_shared_memory(lent, move || asked.as_shm().is_some_and(|memory| memory.is_valid()))
 }
 
 /// Bytes in shared memory: one slice.
