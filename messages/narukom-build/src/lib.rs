@@ -115,12 +115,13 @@ impl Compiler {
 
     /// The code of a package: its structs by prost, and the implementations of Narukom's traits.
     fn package(&self, schema: &SchemaSet, package: &str) -> Result<String, Error> {
-        let types = TypePaths::new(package, &self.modules);
+        let known = schema.set.file.iter().map(|file| file.package().to_owned()).collect();
+        let types = TypePaths::new(package, known, &self.modules);
         let mut reflection = String::new();
         for file in schema.own_files(package) {
             generate::file(file, &types, &mut reflection)?;
         }
-        let structs = self.structs(schema, package)?;
+        let structs = self.structs(schema, package, &types)?;
         Ok(format!(
             "#[allow({LINTS})]\nmod generated {{\n{structs}\n{reflection}\n\
              const FILE_DESCRIPTOR_SET: &[u8] = include_bytes!(\"{package}.descriptors\");\n}}\n\
@@ -128,11 +129,21 @@ impl Compiler {
         ))
     }
 
-    fn structs(&self, schema: &SchemaSet, package: &str) -> Result<String, Error> {
+    fn structs(&self, schema: &SchemaSet, package: &str, types: &TypePaths) -> Result<String, Error> {
         let mut config = prost_build::Config::new();
         config.btree_map(["."]).prost_path("::narukom::prost");
-        for (other, module) in self.modules.iter().filter(|(other, _)| other != package) {
+        let others = self.modules.iter().filter(|(other, _)| other != package);
+        // The path of a package would also be that of the packages whose names continue its name. If
+        // the generated package is one of these, the types of the outer one are mapped one by one.
+        let is_outer = |other: &str| types::inside(&format!(".{package}."), other).is_some();
+        let (outer, plain): (Vec<_>, Vec<_>) = others.partition(|(other, _)| is_outer(other));
+        for (other, module) in plain {
             config.extern_path(format!(".{other}"), module);
+        }
+        for name in schema.type_names() {
+            if !types.is_own(&name) && outer.iter().any(|(other, _)| types::inside(&name, other).is_some()) {
+                config.extern_path(&name, types.rust_path(&name)?);
+            }
         }
         let module = Module::from_protobuf_package_name(package);
         let files = schema.set.file.iter();
@@ -176,6 +187,11 @@ impl SchemaSet {
 
     fn own_files(&self, package: &str) -> impl Iterator<Item = &FileDescriptorProto> {
         self.set.file.iter().filter(move |file| file.package() == package && self.own.contains(file.name()))
+    }
+
+    /// The full names of all types, with a dot in front.
+    fn type_names(&self) -> impl Iterator<Item = String> {
+        self.set.file.iter().flat_map(types::full_names)
     }
 
     /// The files of a package and all their imports, without source positions.

@@ -1,5 +1,9 @@
 //! Rust paths of a schema's messages and enumerations.
 
+use std::collections::BTreeSet;
+
+use prost_types::{DescriptorProto, FileDescriptorProto};
+
 use crate::error::{Error, ErrorKind};
 use crate::names;
 
@@ -7,6 +11,8 @@ use crate::names;
 pub(crate) struct TypePaths {
     /// The package that is being generated.
     package: String,
+    /// The packages of the schema, imports included.
+    known: BTreeSet<String>,
     /// Other packages and their Rust modules.
     modules: Vec<(String, String)>,
 }
@@ -15,8 +21,8 @@ pub(crate) struct TypePaths {
 const WELL_KNOWN: &str = ".google.protobuf.";
 
 impl TypePaths {
-    pub(crate) fn new(package: &str, modules: &[(String, String)]) -> TypePaths {
-        TypePaths { package: package.to_owned(), modules: modules.to_vec() }
+    pub(crate) fn new(package: &str, known: BTreeSet<String>, modules: &[(String, String)]) -> TypePaths {
+        TypePaths { package: package.to_owned(), known, modules: modules.to_vec() }
     }
 
     /// The type's path, relative to the package's module.
@@ -24,7 +30,7 @@ impl TypePaths {
         if self.is_foreign(full_name) {
             return Ok(full_name.to_owned());
         }
-        if let Some(name) = inside(full_name, &self.package) {
+        if let Some(name) = self.own_name(full_name) {
             return path(name);
         }
         let fitting =
@@ -39,15 +45,47 @@ impl TypePaths {
         full_name.starts_with(WELL_KNOWN)
     }
 
+    /// Whether the type is one of the generated package.
+    pub(crate) fn is_own(&self, full_name: &str) -> bool {
+        self.own_name(full_name).is_some()
+    }
+
     /// Whether the type is the entry type of a map field.
     pub(crate) fn is_map_entry(&self, full_name: &str) -> bool {
-        full_name.ends_with("Entry")
-            && inside(full_name, &self.package).is_some_and(|name| name.contains('.'))
+        full_name.ends_with("Entry") && self.own_name(full_name).is_some_and(|name| name.contains('.'))
+    }
+
+    /// The name of a type of the generated package. A package whose name continues that of the
+    /// generated one is another.
+    fn own_name<'a>(&self, full_name: &'a str) -> Option<&'a str> {
+        let name = inside(full_name, &self.package)?;
+        let fitting = self.known.iter().filter_map(|package| inside(full_name, package));
+        fitting.min_by_key(|rest| rest.len()).is_none_or(|rest| rest.len() == name.len()).then_some(name)
     }
 }
 
+/// The full names of the types of a file, with a dot in front; those nested in a message before it.
+pub(crate) fn full_names(file: &FileDescriptorProto) -> Vec<String> {
+    let package = format!(".{}", file.package());
+    let mut names: Vec<String> =
+        file.enum_type.iter().map(|enumeration| format!("{package}.{}", enumeration.name())).collect();
+    file.message_type.iter().for_each(|message| add_names(message, &package, &mut names));
+    names
+}
+
+fn add_names(message: &DescriptorProto, scope: &str, names: &mut Vec<String>) {
+    let name = format!("{scope}.{}", message.name());
+    names.extend(message.enum_type.iter().map(|enumeration| format!("{name}.{}", enumeration.name())));
+    let is_map_entry =
+        |nested: &&DescriptorProto| nested.options.as_ref().is_some_and(|options| options.map_entry());
+    message.nested_type.iter().filter(|nested| !is_map_entry(nested)).for_each(|nested| {
+        add_names(nested, &name, names);
+    });
+    names.push(name);
+}
+
 /// The name of a type without its package.
-fn inside<'a>(full_name: &'a str, package: &str) -> Option<&'a str> {
+pub(crate) fn inside<'a>(full_name: &'a str, package: &str) -> Option<&'a str> {
     full_name.strip_prefix('.')?.strip_prefix(package)?.strip_prefix('.')
 }
 

@@ -86,3 +86,13 @@ fn an_output_that_cannot_be_written_is_named() {
     assert_eq!(error.kind(), ErrorKind::Output);
     assert!(error.to_string().contains("nowhere"), "{error}");
 }
+
+#[test]
+fn a_package_that_continues_the_name_of_its_user_needs_a_place() {
+    let inner = "syntax = \"proto3\"; package team.vision; message Ball { double x = 1; }";
+    let outer =
+        "syntax = \"proto3\"; package team; import \"b.proto\"; message A { team.vision.Ball ball = 1; }";
+    let error = compile(&[("a.proto", outer), ("b.proto", inner)], Compiler::new()).0.unwrap_err();
+    assert_eq!(error.kind(), ErrorKind::Unmapped);
+    assert!(error.to_string().contains("team.vision.Ball"), "{error}");
+}
