@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use crate::error::{Error, ErrorKind};
-use crate::{Compiler, SchemaSet, write};
+use crate::{Compiler, SchemaSet, names, write};
 
 /// Compiles every `.proto` file of a folder, and writes `messages.rs` with the messages of all
 /// packages into `OUT_DIR`:
@@ -69,22 +69,26 @@ fn modules_into(folder: &Path, target: &Path) -> Result<(), Error> {
         if ["lib", "main", "build"].contains(&name.as_str()) {
             continue;
         }
-        if !is_module(&name) {
+        let Some(module) = module_name(&name) else {
             let text = format!(
                 "{}: `{name}` cannot be the name of a module: small letters, digits and `_`",
                 file.display()
             );
             return Err(Error::new(ErrorKind::Name, text));
-        }
+        };
         // Modules that no code references must not be reported as dead code.
-        text += &format!("#[path = {:?}]\npub mod {name};\n", file.display().to_string());
+        text += &format!("#[path = {:?}]\npub mod {module};\n", file.display().to_string());
     }
     write(&target.join("modules.rs"), text.as_bytes())
 }
 
-fn is_module(name: &str) -> bool {
-    name.starts_with(|first: char| first.is_ascii_lowercase())
-        && name.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_')
+/// The identifier of a module; `None` if the name cannot be one. Keywords are written as raw
+/// identifiers, except those that cannot be.
+fn module_name(name: &str) -> Option<String> {
+    let is_name = name.starts_with(|first: char| first.is_ascii_lowercase())
+        && name.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_');
+    let module = names::identifier(name);
+    (is_name && module.trim_start_matches("r#") == name).then_some(module)
 }
 
 /// The files of a folder with that extension, sorted by name.
@@ -134,6 +138,7 @@ mod tests {
                 ("b.rs", ""),
                 ("a.rs", ""),
                 ("lib.rs", ""),
+                ("match.rs", ""),
                 ("build.rs", ""),
                 ("c/mod.rs", ""),
                 ("d.txt", ""),
@@ -143,10 +148,13 @@ mod tests {
         modules_into(source.path(), target.path()).unwrap();
         let text = read(&target, "modules.rs");
         let names: Vec<&str> = text.lines().filter(|line| line.starts_with("pub mod")).collect();
-        assert_eq!(names, ["pub mod a;", "pub mod b;", "pub mod c;"]);
+        assert_eq!(names, ["pub mod a;", "pub mod b;", "pub mod r#match;", "pub mod c;"]);
         fs::write(source.path().join("Wrong-Name.rs"), "").unwrap();
         let said = modules_into(source.path(), target.path()).unwrap_err().to_string();
         assert!(said.contains("`Wrong-Name` cannot be the name of a module"), "{said}");
+        let reserved = folder(&[("super.rs", "")]);
+        let error = modules_into(reserved.path(), target.path()).unwrap_err();
+        assert_eq!(error.kind(), ErrorKind::Name);
     }
 
     #[test]

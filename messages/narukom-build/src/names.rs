@@ -42,7 +42,7 @@ pub(crate) fn module_name(message: &str) -> String {
 }
 
 /// `name`, as a raw identifier if it is a keyword.
-fn identifier(name: &str) -> String {
+pub(crate) fn identifier(name: &str) -> String {
     match name {
         "super" | "self" | "extern" | "crate" => format!("{name}_"),
         _ if KEYWORDS.contains(&name) => format!("r#{name}"),
