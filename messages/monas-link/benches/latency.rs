@@ -205,7 +205,7 @@ impl MessagePath {
 
 /// Two connected hosts.
 struct Pair {
-    hubs: [Narukom; 2],
+    hubs: [Hub; 2],
     host: HostId,
     sleeper: Arc<Mutex<Option<Thread>>>,
     _links: Vec<Link>,

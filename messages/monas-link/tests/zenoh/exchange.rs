@@ -163,7 +163,10 @@ fn clocks_of_hosts_are_compared() {
     let offset = || second.link.report().peers.iter().find_map(|peer| peer.2);
     await_that("the comparison", || offset().is_some());
     let offset = offset().unwrap();
-    assert!((offset.ahead - ahead).unsigned_abs() <= offset.way / 2 + 1, "{offset:?}, and it is {ahead}");
+    assert!(
+        (offset.ahead - ahead).unsigned_abs() <= offset.round_trip / 2 + 1,
+        "{offset:?}, and it is {ahead}"
+    );
     first.say_ball(1.0);
     let published = first.now();
     await_that("the ball", || second.ball_of("robot_1") == Some(1.0));
@@ -172,5 +175,8 @@ fn clocks_of_hosts_are_compared() {
     let sample = reader.from(second.hub.host_id("robot_1").unwrap()).sample(BALL).unwrap().header;
     assert!(sample.published <= published);
     let error = Timestamp::from_nanos(sample.published.as_nanos() - ahead as u64).distance(sample.local);
-    assert!(error <= Duration::from_nanos(offset.way) + Duration::from_millis(200), "{error:?}, {offset:?}");
+    assert!(
+        error <= Duration::from_nanos(offset.round_trip) + Duration::from_millis(200),
+        "{error:?}, {offset:?}"
+    );
 }

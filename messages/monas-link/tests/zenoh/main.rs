@@ -54,7 +54,7 @@ fn everything() -> LinkSettings {
 
 /// A host with a link.
 struct End {
-    hub: Narukom,
+    hub: Hub,
     link: Link,
     /// What its clock showed at `start`.
     began: Timestamp,
