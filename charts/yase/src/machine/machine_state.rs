@@ -195,7 +195,7 @@ impl MachineState {
             chooser: Chooser::declared(),
             active_leaves: BitSet::new(places),
             vacated: BitSet::new(places),
-            arrived: BitSet::new(chart.joins.iter().map(|join| join.sources.len()).sum()),
+            arrived: BitSet::new(chart.joins.iter().map(|join| join.regions.len()).sum()),
             completions: VecDeque::new(),
             records: vec![HistoryValue::default(); chart.histories.len()].into(),
             root_is_final: false,
@@ -453,5 +453,49 @@ impl MachineState {
     #[inline]
     pub(crate) fn is_active(&self, place: NodeIndex) -> bool {
         self.active.contains(place.index())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use crate::statechart::{Node, NodeKind, Statechart, Transition};
+    use crate::vocabulary::TypeEnvironment;
+    use crate::{Activation, Host, Machine, Semantics, Timestamp};
+
+    struct NoActivities;
+
+    impl Host for NoActivities {
+        fn start(&mut self, _: Activation) {}
+        fn cancel(&mut self, _: Activation) {}
+        fn stop(&mut self, _: Activation) {}
+    }
+
+    #[test]
+    fn arrivals_at_any_number_of_exit_points_are_kept() {
+        let mut chart = Statechart::new("exits");
+        let start = chart.add(Statechart::ROOT, Node::new(NodeKind::Start, ""));
+        let last = chart.add(Statechart::ROOT, Node::new(NodeKind::Basic, "last"));
+        let mut before = start;
+        for number in 0..65 {
+            let both = chart.add(Statechart::ROOT, Node::new(NodeKind::And, format!("both{number}")));
+            let exit = chart.add(both, Node::new(NodeKind::ExitPoint, "out"));
+            for _ in 0..2 {
+                let region = chart.add(both, Node::new(NodeKind::Or, ""));
+                let begin = chart.add(region, Node::new(NodeKind::Start, ""));
+                let state = chart.add(region, Node::new(NodeKind::Basic, "state"));
+                chart.connect(Transition::new(begin, state));
+                chart.connect(Transition::new(state, exit));
+            }
+            chart.connect(Transition::new(before, both));
+            before = exit;
+        }
+        chart.connect(Transition::new(before, last));
+        let compiled = chart.compile_with(&TypeEnvironment::default(), Semantics::uml()).unwrap();
+        let mut machine = Machine::new(Arc::new(compiled));
+        machine.start(Timestamp::ZERO, &mut NoActivities);
+        machine.run_to_completion(Timestamp::ZERO, &mut NoActivities).unwrap();
+        assert!(machine.is_active(last), "{:?}", machine.configuration());
     }
 }
