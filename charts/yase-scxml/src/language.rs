@@ -46,7 +46,7 @@ mod value;
 
 pub(crate) use evaluate::{Evaluator, InPredicate};
 pub(crate) use heap::{Heap, PropertyMap};
-pub(crate) use memory::ScriptMemory;
+pub(crate) use memory::{ScriptMemory, StepBudget};
 pub(crate) use parser::{is_json, parse_expression, parse_location, parse_program};
 pub(crate) use query::ActiveQuery;
 pub(crate) use reserved_words::is_variable;

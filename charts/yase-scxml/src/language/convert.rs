@@ -4,6 +4,7 @@ use std::cmp::Ordering;
 use std::sync::Arc;
 
 use super::heap::{Heap, ObjectContent};
+use super::memory::StepBudget;
 use super::value::ScriptValue;
 use super::{EvalError, MAX_TEXT};
 
@@ -86,19 +87,29 @@ pub(crate) fn type_of(value: &ScriptValue) -> &'static str {
 }
 
 impl Heap {
-    /// The text of a value.
-    pub(crate) fn text_of(&self, value: &ScriptValue) -> Result<Arc<str>, EvalError> {
+    /// The text of a value; charges the steps for reading it.
+    pub(crate) fn text_of(&self, value: &ScriptValue, steps: &mut StepBudget) -> Result<Arc<str>, EvalError> {
         match value {
-            ScriptValue::Text(text) => Ok(text.clone()),
+            ScriptValue::Text(text) => {
+                steps.charge_reading(text.len())?;
+                Ok(text.clone())
+            }
             other => {
                 let mut text = String::new();
-                self.write_text(other, MAX_NESTING, &mut text)?;
+                self.write_text(other, MAX_NESTING, &mut text, steps)?;
                 Ok(text.into())
             }
         }
     }
 
-    fn write_text(&self, value: &ScriptValue, depth: usize, text: &mut String) -> Result<(), EvalError> {
+    fn write_text(
+        &self,
+        value: &ScriptValue,
+        depth: usize,
+        text: &mut String,
+        steps: &mut StepBudget,
+    ) -> Result<(), EvalError> {
+        steps.charge_reading(if let ScriptValue::Text(part) = value { part.len() } else { 0 })?;
         match value {
             ScriptValue::Undefined => text.push_str("undefined"),
             ScriptValue::Null => text.push_str("null"),
@@ -107,7 +118,7 @@ impl Heap {
             ScriptValue::Text(part) => text.push_str(part),
             ScriptValue::Function(_) => text.push_str("function"),
             ScriptValue::Object(id) => match self.get(*id).map(|object| &object.content) {
-                Some(ObjectContent::Array(items)) => self.write_items(items, ",", depth, text)?,
+                Some(ObjectContent::Array(items)) => self.write_items(items, ",", depth, text, steps)?,
                 _ => text.push_str("[object Object]"),
             },
         }
@@ -124,14 +135,16 @@ impl Heap {
         separator: &str,
         depth: usize,
         text: &mut String,
+        steps: &mut StepBudget,
     ) -> Result<(), EvalError> {
         if depth == 0 {
             return Err(EvalError::new("an array lies in itself, or is nested too deeply to be a text"));
         }
+        steps.charge_reading(items.len().saturating_mul(separator.len().max(1)))?;
         for (index, item) in items.iter().enumerate() {
             text.push_str(if index == 0 { "" } else { separator });
             if !matches!(item, ScriptValue::Undefined | ScriptValue::Null) {
-                self.write_text(item, depth - 1, text)?;
+                self.write_text(item, depth - 1, text, steps)?;
             } else if text.len() > MAX_TEXT {
                 return Err(EvalError::new(format!("a text is longer than {MAX_TEXT} bytes")));
             }
@@ -139,27 +152,40 @@ impl Heap {
         Ok(())
     }
 
-    pub(crate) fn number_of(&self, value: &ScriptValue) -> Result<f64, EvalError> {
+    /// The number of a value; charges the steps for reading it.
+    pub(crate) fn number_of(&self, value: &ScriptValue, steps: &mut StepBudget) -> Result<f64, EvalError> {
         Ok(match value {
             ScriptValue::Undefined => f64::NAN,
             ScriptValue::Null => 0.0,
             ScriptValue::Bool(value) => f64::from(u8::from(*value)),
             ScriptValue::Number(number) => *number,
-            ScriptValue::Text(text) => text_number(text),
-            ScriptValue::Object(_) | ScriptValue::Function(_) => text_number(&self.text_of(value)?),
+            ScriptValue::Text(_) | ScriptValue::Object(_) | ScriptValue::Function(_) => {
+                text_number(&self.text_of(value, steps)?)
+            }
         })
     }
 
     /// The primitive value of arrays, objects and functions: a text.
-    pub(crate) fn primitive(&self, value: &ScriptValue) -> Result<ScriptValue, EvalError> {
+    pub(crate) fn primitive(
+        &self,
+        value: &ScriptValue,
+        steps: &mut StepBudget,
+    ) -> Result<ScriptValue, EvalError> {
         match value {
-            ScriptValue::Object(_) | ScriptValue::Function(_) => Ok(ScriptValue::Text(self.text_of(value)?)),
+            ScriptValue::Object(_) | ScriptValue::Function(_) => {
+                Ok(ScriptValue::Text(self.text_of(value, steps)?))
+            }
             other => Ok(other.clone()),
         }
     }
 
     /// Whether `a == b`.
-    pub(crate) fn equal(&self, a: &ScriptValue, b: &ScriptValue) -> Result<bool, EvalError> {
+    pub(crate) fn equal(
+        &self,
+        a: &ScriptValue,
+        b: &ScriptValue,
+        steps: &mut StepBudget,
+    ) -> Result<bool, EvalError> {
         let absent = |value: &ScriptValue| matches!(value, ScriptValue::Undefined | ScriptValue::Null);
         let composed =
             |value: &ScriptValue| matches!(value, ScriptValue::Object(_) | ScriptValue::Function(_));
@@ -172,17 +198,22 @@ impl Heap {
         if let (ScriptValue::Text(text), other) | (other, ScriptValue::Text(text)) = (a, b)
             && composed(other)
         {
-            return Ok(*text == self.text_of(other)?);
+            return Ok(*text == self.text_of(other, steps)?);
         }
-        Ok(self.number_of(a)? == self.number_of(b)?)
+        Ok(self.number_of(a, steps)? == self.number_of(b, steps)?)
     }
 
     /// The order of two values, if they can be compared.
-    pub(crate) fn order(&self, a: &ScriptValue, b: &ScriptValue) -> Result<Option<Ordering>, EvalError> {
-        let (a, b) = (self.primitive(a)?, self.primitive(b)?);
+    pub(crate) fn order(
+        &self,
+        a: &ScriptValue,
+        b: &ScriptValue,
+        steps: &mut StepBudget,
+    ) -> Result<Option<Ordering>, EvalError> {
+        let (a, b) = (self.primitive(a, steps)?, self.primitive(b, steps)?);
         if let (ScriptValue::Text(a), ScriptValue::Text(b)) = (&a, &b) {
             return Ok(Some(a.encode_utf16().cmp(b.encode_utf16())));
         }
-        Ok(self.number_of(&a)?.partial_cmp(&self.number_of(&b)?))
+        Ok(self.number_of(&a, steps)?.partial_cmp(&self.number_of(&b, steps)?))
     }
 }

@@ -109,8 +109,8 @@ impl<'a> Evaluator<'a> {
         let value = self.value(operand)?;
         Ok(match operator {
             Unary::Not => ScriptValue::Bool(!truth(&value)),
-            Unary::Minus => ScriptValue::Number(-self.memory.heap.number_of(&value)?),
-            Unary::Plus => ScriptValue::Number(self.memory.heap.number_of(&value)?),
+            Unary::Minus => ScriptValue::Number(-self.memory.number_of(&value)?),
+            Unary::Plus => ScriptValue::Number(self.memory.number_of(&value)?),
             Unary::TypeOf => ScriptValue::Text(type_of(&value).into()),
         })
     }
@@ -139,27 +139,29 @@ impl<'a> Evaluator<'a> {
     /// Result of a binary operator.
     pub(crate) fn binary(&mut self, operator: Binary, a: &ScriptValue, b: &ScriptValue) -> EvalResult {
         self.memory.charge_reading(size(a) + size(b))?;
-        let heap = &self.memory.heap;
+        let ScriptMemory { heap, steps, .. } = &mut *self.memory;
         Ok(ScriptValue::Bool(match operator {
-            Binary::Equal => heap.equal(a, b)?,
-            Binary::NotEqual => !heap.equal(a, b)?,
+            Binary::Equal => heap.equal(a, b, steps)?,
+            Binary::NotEqual => !heap.equal(a, b, steps)?,
             Binary::Same => a == b,
             Binary::NotSame => a != b,
-            Binary::Less => heap.order(a, b)? == Some(Ordering::Less),
-            Binary::Greater => heap.order(a, b)? == Some(Ordering::Greater),
-            Binary::LessOrEqual => matches!(heap.order(a, b)?, Some(Ordering::Less | Ordering::Equal)),
-            Binary::GreaterOrEqual => matches!(heap.order(a, b)?, Some(Ordering::Greater | Ordering::Equal)),
+            Binary::Less => heap.order(a, b, steps)? == Some(Ordering::Less),
+            Binary::Greater => heap.order(a, b, steps)? == Some(Ordering::Greater),
+            Binary::LessOrEqual => matches!(heap.order(a, b, steps)?, Some(Ordering::Less | Ordering::Equal)),
+            Binary::GreaterOrEqual => {
+                matches!(heap.order(a, b, steps)?, Some(Ordering::Greater | Ordering::Equal))
+            }
             Binary::Within => self.within(a, b)?,
             Binary::Plus => return self.plus(a, b),
             _ => return self.arithmetic(operator, a, b),
         }))
     }
 
-    fn within(&self, name: &ScriptValue, value: &ScriptValue) -> Result<bool, EvalError> {
+    fn within(&mut self, name: &ScriptValue, value: &ScriptValue) -> Result<bool, EvalError> {
         let ScriptValue::Object(id) = value else {
             return Err(EvalError::new("`in` needs an object on its right"));
         };
-        let name = self.memory.heap.text_of(name)?;
+        let name = self.memory.text_of(name)?;
         Ok(match self.memory.heap.get(*id).map(|object| &object.content) {
             Some(ObjectContent::Record(record)) => record.get(&name).is_some(),
             Some(ObjectContent::Array(items)) => {
@@ -170,20 +172,20 @@ impl<'a> Evaluator<'a> {
     }
 
     fn plus(&mut self, a: &ScriptValue, b: &ScriptValue) -> EvalResult {
-        let heap = &mut self.memory.heap;
-        let (a, b) = (heap.primitive(a)?, heap.primitive(b)?);
+        let ScriptMemory { heap, steps, .. } = &mut *self.memory;
+        let (a, b) = (heap.primitive(a, steps)?, heap.primitive(b, steps)?);
         if !matches!(a, ScriptValue::Text(_)) && !matches!(b, ScriptValue::Text(_)) {
-            return Ok(ScriptValue::Number(heap.number_of(&a)? + heap.number_of(&b)?));
+            return Ok(ScriptValue::Number(heap.number_of(&a, steps)? + heap.number_of(&b, steps)?));
         }
-        let (a, b) = (heap.text_of(&a)?, heap.text_of(&b)?);
+        let (a, b) = (heap.text_of(&a, steps)?, heap.text_of(&b, steps)?);
         if a.len() + b.len() > MAX_TEXT {
             return Err(EvalError::new(format!("a text is longer than {MAX_TEXT} bytes")));
         }
         heap.text([&*a, &*b].concat())
     }
 
-    fn arithmetic(&self, operator: Binary, a: &ScriptValue, b: &ScriptValue) -> EvalResult {
-        let (a, b) = (self.memory.heap.number_of(a)?, self.memory.heap.number_of(b)?);
+    fn arithmetic(&mut self, operator: Binary, a: &ScriptValue, b: &ScriptValue) -> EvalResult {
+        let (a, b) = (self.memory.number_of(a)?, self.memory.number_of(b)?);
         Ok(ScriptValue::Number(match operator {
             Binary::Minus => a - b,
             Binary::Times => a * b,
@@ -194,7 +196,7 @@ impl<'a> Evaluator<'a> {
 
     fn builtin(&mut self, builtin: Builtin, argument: &ScriptExpression) -> EvalResult {
         let value = self.value(argument)?;
-        let text = self.memory.heap.text_of(&value)?;
+        let text = self.memory.text_of(&value)?;
         match builtin {
             Builtin::In => Ok(ScriptValue::Bool(self.states.is_in(&text))),
             Builtin::String => self.memory.heap.text(text),
@@ -211,7 +213,7 @@ impl<'a> Evaluator<'a> {
                 Access::Member(name) => self.member(&value, name)?,
                 Access::Index(index) => {
                     let index = self.value(index)?;
-                    let name = self.memory.heap.text_of(&index)?;
+                    let name = self.memory.text_of(&index)?;
                     self.member(&value, &name)?
                 }
                 Access::Call(arguments) => {

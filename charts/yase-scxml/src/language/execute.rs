@@ -101,7 +101,7 @@ impl Evaluator<'_> {
             Access::Member(name) => Ok(name.clone()),
             Access::Index(index) => {
                 let index = self.value(index)?;
-                self.memory.heap.text_of(&index)
+                self.memory.text_of(&index)
             }
             _ => Err(EvalError::new("nothing can be assigned to what a function returns")),
         }

@@ -7,6 +7,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use super::memory::StepBudget;
 use super::value::{DataValue, ScriptValue};
 use super::{EvalError, MAX_BYTES};
 
@@ -191,13 +192,19 @@ impl Heap {
         })
     }
 
-    /// Copies a value with everything that it refers to.
+    /// Copies a value with everything that it refers to; charges the steps for reading it.
     ///
     /// # Errors
     /// It contains a function or a cycle, or is too large.
-    pub(crate) fn export(&mut self, value: &ScriptValue) -> Result<DataValue, EvalError> {
+    pub(crate) fn export(
+        &mut self,
+        value: &ScriptValue,
+        steps: &mut StepBudget,
+    ) -> Result<DataValue, EvalError> {
         let mut bytes = 0;
-        let data = self.copy(value, MAX_NESTING, &mut bytes)?;
+        let data = self.copy(value, MAX_NESTING, &mut bytes);
+        steps.charge_reading(bytes)?;
+        let data = data?;
         self.charge(bytes)?;
         Ok(data)
     }

@@ -9,6 +9,7 @@ use std::sync::Arc;
 use super::convert::number_text;
 use super::evaluate::Evaluator;
 use super::heap::{Heap, ObjectContent};
+use super::memory::{ScriptMemory, StepBudget};
 use super::value::{ScriptValue, quoted};
 use super::{EvalError, MAX_TEXT};
 
@@ -148,12 +149,8 @@ impl Evaluator<'_> {
         function: LibraryFunction,
         arguments: &[ScriptValue],
     ) -> Result<ScriptValue, EvalError> {
-        let heap = &self.memory.heap;
-        let number = |index: usize| arguments.get(index).map_or(Ok(f64::NAN), |value| heap.number_of(value));
-        let of_all = |first: f64, function: fn(f64, f64) -> f64| {
-            let mut numbers = arguments.iter().map(|value| heap.number_of(value));
-            numbers.try_fold(first, |result, number| number.map(|number| function(result, number)))
-        };
+        let mut number =
+            |index: usize| arguments.get(index).map_or(Ok(f64::NAN), |value| self.memory.number_of(value));
         Ok(ScriptValue::Number(match function {
             LibraryFunction::Stringify => return self.stringify(arguments),
             LibraryFunction::IsNan => return Ok(ScriptValue::Bool(number(0)?.is_nan())),
@@ -161,10 +158,21 @@ impl Evaluator<'_> {
             LibraryFunction::OfOne(index) => OF_ONE[index].1(number(0)?),
             LibraryFunction::Power => power(number(0)?, number(1)?),
             LibraryFunction::Atan2 => libm::atan2(number(0)?, number(1)?),
-            LibraryFunction::Hypot => of_all(0.0, libm::hypot)?,
-            LibraryFunction::Max => of_all(f64::NEG_INFINITY, |a, b| extreme(a, b, a > b))?,
-            LibraryFunction::Min => of_all(f64::INFINITY, |a, b| extreme(a, b, a < b))?,
+            LibraryFunction::Hypot => self.of_all(arguments, 0.0, libm::hypot)?,
+            LibraryFunction::Max => self.of_all(arguments, f64::NEG_INFINITY, |a, b| extreme(a, b, a > b))?,
+            LibraryFunction::Min => self.of_all(arguments, f64::INFINITY, |a, b| extreme(a, b, a < b))?,
         }))
+    }
+
+    /// The result of a function of two numbers, applied to all arguments in order.
+    fn of_all(
+        &mut self,
+        arguments: &[ScriptValue],
+        first: f64,
+        function: fn(f64, f64) -> f64,
+    ) -> Result<f64, EvalError> {
+        let mut numbers = arguments.iter().map(|value| self.memory.number_of(value));
+        numbers.try_fold(first, |result, number| number.map(|number| function(result, number)))
     }
 
     fn stringify(&mut self, arguments: &[ScriptValue]) -> Result<ScriptValue, EvalError> {
@@ -179,7 +187,8 @@ impl Evaluator<'_> {
         let Some(value) = arguments.first().filter(|value| has_json(value)) else {
             return Ok(ScriptValue::Undefined);
         };
-        let mut writer = JsonWriter { heap: &self.memory.heap, indent, text: String::new() };
+        let ScriptMemory { heap, steps, .. } = &mut *self.memory;
+        let mut writer = JsonWriter { heap, steps, indent, text: String::new() };
         writer.value(value, 0)?;
         let text: Arc<str> = writer.text.into();
         self.memory.charge_reading(text.len())?;
@@ -194,6 +203,7 @@ fn has_json(value: &ScriptValue) -> bool {
 
 struct JsonWriter<'a> {
     heap: &'a Heap,
+    steps: &'a mut StepBudget,
     indent: String,
     text: String,
 }
@@ -203,6 +213,7 @@ impl JsonWriter<'_> {
         if depth > MAX_NESTING {
             return Err(EvalError::new("the value lies in itself, or is nested too deeply for JSON"));
         }
+        self.steps.charge_reading(self.size(value))?;
         match value {
             ScriptValue::Undefined | ScriptValue::Null | ScriptValue::Function(_) => {
                 self.text.push_str("null");
@@ -239,6 +250,19 @@ impl JsonWriter<'_> {
         match self.text.len() > MAX_TEXT {
             true => Err(EvalError::new(format!("a text is longer than {MAX_TEXT} bytes"))),
             false => Ok(()),
+        }
+    }
+
+    /// Cost of reading a value without its members.
+    fn size(&self, value: &ScriptValue) -> usize {
+        match value {
+            ScriptValue::Text(text) => text.len(),
+            ScriptValue::Object(id) => match self.heap.get(*id).map(|object| &object.content) {
+                Some(ObjectContent::Array(items)) => items.len(),
+                Some(ObjectContent::Record(record)) => record.members().len(),
+                None => 0,
+            },
+            _ => 0,
         }
     }
 

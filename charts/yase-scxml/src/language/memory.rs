@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::EvalError;
 use super::heap::Heap;
-use super::value::ScriptValue;
+use super::value::{DataValue, ScriptValue};
 
 /// Variables that only the session sets; documents only read them.
 const SYSTEM: [&str; 5] = ["_event", "_sessionid", "_name", "_ioprocessors", "_x"];
@@ -20,7 +20,46 @@ pub(crate) struct ScriptMemory {
     pub(crate) heap: Heap,
     /// Values in use that no variable holds.
     pinned: Vec<ScriptValue>,
-    steps: u32,
+    pub(crate) steps: StepBudget,
+}
+
+/// The remaining steps of evaluation of a macrostep.
+#[derive(Clone, Debug)]
+pub(crate) struct StepBudget {
+    left: u32,
+}
+
+impl Default for StepBudget {
+    fn default() -> StepBudget {
+        StepBudget { left: MAX_STEPS }
+    }
+}
+
+impl StepBudget {
+    /// Charges one step of work.
+    pub(crate) fn step(&mut self) -> Result<(), EvalError> {
+        match self.left.checked_sub(1) {
+            Some(left) => {
+                self.left = left;
+                Ok(())
+            }
+            None => {
+                Err(EvalError::new(format!("one macrostep takes more than {MAX_STEPS} steps of evaluation")))
+            }
+        }
+    }
+
+    /// Charges the steps for reading this many bytes or items.
+    pub(crate) fn charge_reading(&mut self, size: usize) -> Result<(), EvalError> {
+        let steps = u32::try_from(size / 64).unwrap_or(u32::MAX);
+        self.left = self.left.saturating_sub(steps);
+        self.step()
+    }
+
+    /// Whether all steps are used.
+    pub(crate) fn is_exhausted(&self) -> bool {
+        self.left == 0
+    }
 }
 
 impl ScriptMemory {
@@ -29,7 +68,7 @@ impl ScriptMemory {
             variables: BTreeMap::new(),
             heap: Heap::default(),
             pinned: Vec::new(),
-            steps: MAX_STEPS,
+            steps: StepBudget::default(),
         }
     }
 
@@ -89,32 +128,37 @@ impl ScriptMemory {
 
     /// Charges one step of work.
     pub(crate) fn step(&mut self) -> Result<(), EvalError> {
-        match self.steps.checked_sub(1) {
-            Some(steps) => {
-                self.steps = steps;
-                Ok(())
-            }
-            None => {
-                Err(EvalError::new(format!("one macrostep takes more than {MAX_STEPS} steps of evaluation")))
-            }
-        }
+        self.steps.step()
     }
 
     /// Charges the steps for reading this many bytes or items.
     pub(crate) fn charge_reading(&mut self, size: usize) -> Result<(), EvalError> {
-        let steps = u32::try_from(size / 64).unwrap_or(u32::MAX);
-        self.steps = self.steps.saturating_sub(steps);
-        self.step()
+        self.steps.charge_reading(size)
+    }
+
+    /// Copies a value with everything that it refers to, and charges the steps for reading it.
+    pub(crate) fn export(&mut self, value: &ScriptValue) -> Result<DataValue, EvalError> {
+        self.heap.export(value, &mut self.steps)
+    }
+
+    /// The text of a value.
+    pub(crate) fn text_of(&mut self, value: &ScriptValue) -> Result<Arc<str>, EvalError> {
+        self.heap.text_of(value, &mut self.steps)
+    }
+
+    /// The number of a value.
+    pub(crate) fn number_of(&mut self, value: &ScriptValue) -> Result<f64, EvalError> {
+        self.heap.number_of(value, &mut self.steps)
     }
 
     /// Whether the macrostep has used all its steps.
     pub(crate) fn is_exhausted(&self) -> bool {
-        self.steps == 0
+        self.steps.is_exhausted()
     }
 
     /// Begins a new macrostep.
     pub(crate) fn refresh(&mut self) {
-        self.steps = MAX_STEPS;
+        self.steps = StepBudget::default();
     }
 }
 

@@ -3,6 +3,7 @@
 use super::EvalError;
 use super::evaluate::Evaluator;
 use super::heap::ObjectContent;
+use super::memory::ScriptMemory;
 use super::syntax::Method;
 use super::value::ScriptValue;
 
@@ -23,7 +24,7 @@ impl Evaluator<'_> {
             (ScriptValue::Text(text), Method::Concat) => {
                 let mut whole = text.to_string();
                 for argument in arguments {
-                    whole.push_str(&self.memory.heap.text_of(argument)?);
+                    whole.push_str(&self.memory.text_of(argument)?);
                     if whole.len() > super::MAX_TEXT {
                         return Err(EvalError::new(format!(
                             "a text is longer than {} bytes",
@@ -44,10 +45,12 @@ impl Evaluator<'_> {
         owner: &ScriptValue,
         arguments: &[ScriptValue],
     ) -> Result<ScriptValue, EvalError> {
-        let Some(items) = self.memory.heap.items(owner) else { return Err(no_method(method)) };
+        let Some(length) = self.memory.heap.items(owner).map(<[ScriptValue]>::len) else {
+            return Err(no_method(method));
+        };
         match method {
             Method::Slice => {
-                let (start, end) = self.range(items.len(), arguments)?;
+                let (start, end) = self.range(length, arguments)?;
                 self.copied(owner, start, end)
             }
             Method::Concat => self.joined(owner, arguments),
@@ -55,10 +58,12 @@ impl Evaluator<'_> {
             Method::Join => {
                 let separator = match arguments.first() {
                     None | Some(ScriptValue::Undefined) => ",".into(),
-                    Some(separator) => self.memory.heap.text_of(separator)?,
+                    Some(separator) => self.memory.text_of(separator)?,
                 };
                 let mut text = String::new();
-                self.memory.heap.write_items(items, &separator, 32, &mut text)?;
+                let ScriptMemory { heap, steps, .. } = &mut *self.memory;
+                let items = heap.items(owner).unwrap_or_default();
+                heap.write_items(items, &separator, 32, &mut text, steps)?;
                 self.memory.heap.text(text)
             }
         }
@@ -74,6 +79,7 @@ impl Evaluator<'_> {
         let mut whole = Vec::new();
         for part in std::iter::once(owner).chain(arguments) {
             let length = self.memory.heap.items(part).map_or(1, <[ScriptValue]>::len);
+            self.memory.charge_reading(length)?;
             self.memory.heap.charge_items(length)?;
             match self.memory.heap.items(part) {
                 Some(items) => whole.extend_from_slice(items),
@@ -96,11 +102,11 @@ impl Evaluator<'_> {
     }
 
     /// The range of a value of this length that the arguments of `slice` select.
-    fn range(&self, length: usize, arguments: &[ScriptValue]) -> Result<(usize, usize), EvalError> {
-        let place = |argument: Option<&ScriptValue>, missing: usize| match argument {
+    fn range(&mut self, length: usize, arguments: &[ScriptValue]) -> Result<(usize, usize), EvalError> {
+        let mut place = |argument: Option<&ScriptValue>, missing: usize| match argument {
             None | Some(ScriptValue::Undefined) => Ok(missing),
             Some(value) => {
-                let number = self.memory.heap.number_of(value)?.trunc();
+                let number = self.memory.number_of(value)?.trunc();
                 let from_end = if number < 0.0 { number + length as f64 } else { number };
                 Ok(from_end.clamp(0.0, length as f64) as usize)
             }

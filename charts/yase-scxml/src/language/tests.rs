@@ -19,7 +19,7 @@ fn after(script: &str, expression: &str) -> Result<String, String> {
     evaluation.run(&program).map_err(|fault| fault.message)?;
     let expression = parse_expression(expression).map_err(|refused| refused.message)?;
     let value = evaluation.value(&expression).map_err(|fault| fault.message)?;
-    memory.heap.export(&value).map(|data| data.to_string()).map_err(|fault| fault.message)
+    memory.export(&value).map(|data| data.to_string()).map_err(|fault| fault.message)
 }
 
 fn value(expression: &str) -> String {
@@ -256,6 +256,52 @@ fn work_and_memory_are_limited() {
     assert!(fault("var a = []; a.push(a)", "a + ''").contains("lies in itself"), "circles as texts");
     let sharing = vec!["a = [a, a];"; 60].join("");
     assert!(fault(&format!("var a = 1; {sharing}"), "a").contains("too large"), "shared parts");
+}
+
+/// The value of an expression if its evaluation takes at most 2,000 steps.
+fn cheap(memory: &mut ScriptMemory, expression: &str) -> Result<ScriptValue, String> {
+    memory.refresh();
+    memory.charge_reading(64 * 1_998_000).unwrap();
+    let expression = parse_expression(expression).unwrap();
+    Evaluator::new(memory, &ActiveNames(&[])).value(&expression).map_err(|fault| fault.message)
+}
+
+#[test]
+fn conversions_are_charged_by_their_length() {
+    let mut memory = ScriptMemory::new();
+    let doubling = "s = s + s;".repeat(18);
+    let script = format!("var a = []; a[262143] = 1; var s = ' '; {doubling} var b = [s]");
+    Evaluator::new(&mut memory, &ActiveNames(&[])).run(&parse_program(&script).unwrap()).unwrap();
+    assert!(cheap(&mut memory, "a.length").is_ok());
+    for long in ["a", "b"] {
+        for expression in [
+            "# == 'x'",
+            "# == 1",
+            "# < 1",
+            "# + 1",
+            "# - 1",
+            "-#",
+            "isNaN(#)",
+            "Math.max(#)",
+            "String(#)",
+            "JSON.stringify(#)",
+            "# in {}",
+            "{}[#]",
+            "[1, 2].join(#)",
+            "'x'.concat(#)",
+        ] {
+            let said = cheap(&mut memory, &expression.replace('#', long)).unwrap_err();
+            assert!(said.contains("steps of evaluation"), "{expression} of {long}: {said}");
+        }
+    }
+    for expression in ["-s", "[].concat(a)", "a.join('')"] {
+        let said = cheap(&mut memory, expression).unwrap_err();
+        assert!(said.contains("steps of evaluation"), "{expression}: {said}");
+    }
+    memory.refresh();
+    memory.charge_reading(64 * 1_998_000).unwrap();
+    let copied = memory.get("a").cloned().unwrap();
+    assert!(memory.export(&copied).unwrap_err().message.contains("steps of evaluation"));
 }
 
 #[test]

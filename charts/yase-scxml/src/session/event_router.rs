@@ -118,6 +118,11 @@ impl EventRouter {
         self.delayed.insert((due, self.count), delayed);
     }
 
+    /// The number of delayed events of all sessions.
+    pub(crate) fn delayed_count(&self) -> usize {
+        self.delayed.len()
+    }
+
     pub(crate) fn next_deadline(&self) -> Option<Timestamp> {
         self.delayed.keys().next().map(|&(due, _)| due)
     }

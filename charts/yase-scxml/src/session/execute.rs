@@ -113,6 +113,7 @@ impl ContentExecutor<'_> {
             ExecutableContent::Send(send) => return self.send(send),
             ExecutableContent::Cancel(id) => {
                 let id = self.text(id)?;
+                self.memory.charge_reading(self.exchange.delayed_count())?;
                 self.exchange.cancel(self.state.number, &id);
             }
         }
@@ -145,7 +146,7 @@ impl ContentExecutor<'_> {
             LiteralOrExpression::Fixed(text) => Ok(text.clone()),
             LiteralOrExpression::Computed(code) => {
                 let value = self.value(code)?;
-                Ok(self.memory.heap.text_of(&value)?.to_string())
+                Ok(self.memory.text_of(&value)?.to_string())
             }
         }
     }
@@ -212,8 +213,8 @@ impl ContentExecutor<'_> {
             None => String::new(),
             Some(code) => match self.value(code)? {
                 ScriptValue::Text(text) => text.to_string(),
-                object @ ScriptValue::Object(_) => self.memory.heap.export(&object)?.to_string(),
-                other => self.memory.heap.text_of(&other)?.to_string(),
+                object @ ScriptValue::Object(_) => self.memory.export(&object)?.to_string(),
+                other => self.memory.text_of(&other)?.to_string(),
             },
         };
         let session = super::event_router::session_id(self.state.number);

@@ -80,7 +80,7 @@ impl ContentExecutor<'_> {
             (None, Some(InlineDocument::Document(text))) => ("content".into(), text.clone()),
             (None, Some(InlineDocument::Expression(code))) => {
                 let value = self.value(code)?;
-                ("content".into(), self.memory.heap.text_of(&value)?.to_string())
+                ("content".into(), self.memory.text_of(&value)?.to_string())
             }
             (None, None) => return Err(EvalError::new("nothing is invoked")),
         };

@@ -12,7 +12,7 @@ impl ContentExecutor<'_> {
     pub(crate) fn payload(&mut self, payload: &Payload) -> Result<DataValue, EvalError> {
         if let Some(content) = &payload.content {
             let value = self.source(content)?;
-            return self.memory.heap.export(&value);
+            return self.memory.export(&value);
         }
         let mut members = self.named(&payload.names)?;
         self.parameters(&payload.parameters, &mut members);
@@ -28,7 +28,7 @@ impl ContentExecutor<'_> {
         for name in names {
             let location = name.get()?;
             let value = self.evaluation().read(location)?;
-            members.push((name.text.clone(), self.memory.heap.export(&value)?));
+            members.push((name.text.clone(), self.memory.export(&value)?));
         }
         Ok(members)
     }
@@ -53,6 +53,6 @@ impl ContentExecutor<'_> {
                 self.evaluation().read(location)?
             }
         };
-        self.memory.heap.export(&value)
+        self.memory.export(&value)
     }
 }

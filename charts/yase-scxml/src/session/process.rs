@@ -9,7 +9,7 @@ use super::event_router::{EventRouter, RouterItem, SessionNumber, session_id};
 use super::execute::ContentExecutor;
 use super::prepare::PreparedDocument;
 use super::session_host::{ActiveNodes, SessionHost};
-use crate::language::{DataValue, PropertyMap, ScriptMemory};
+use crate::language::{DataValue, PropertyMap, ScriptMemory, StepBudget};
 use yase::Timestamp;
 use yase::statechart::{NodeId, Statechart};
 use yase::{Machine, Status};
@@ -121,7 +121,7 @@ impl Process {
 
     pub(crate) fn value(&mut self, variable: &str) -> Option<DataValue> {
         let value = self.memory.get(variable)?.clone();
-        self.memory.heap.export(&value).ok()
+        self.memory.heap.export(&value, &mut StepBudget::default()).ok()
     }
 
     /// Starts the document.

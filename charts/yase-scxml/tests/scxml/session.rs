@@ -345,6 +345,37 @@ fn a_livelock_is_stopped() {
 }
 
 #[test]
+fn conversions_and_cancelled_events_are_work() {
+    // Neither the sends nor the cancels take too many steps by themselves; each cancel looks at all
+    // delayed events.
+    let loops = |count: usize, inside: &str| {
+        let open = |name| format!("<foreach array='a' item='{name}'>");
+        let opened: String = ["b", "c", "d", "e"][..count].iter().map(open).collect();
+        format!("{opened}{inside}{}", "</foreach>".repeat(count))
+    };
+    let document = |inside: &str| {
+        format!(
+            "<datamodel><data id='a' expr='[1,2,3,4,5,6,7,8,9,10]'/></datamodel>
+             <script>function f(n) {{ if (n > 0) {{ f(n - 1); f(n - 1) }} }}</script>
+             <state id='s'><onentry><script>f(16)</script>{inside}</onentry></state>"
+        )
+    };
+    let send = loops(4, "<send event='e' delay='1s'/>");
+    let cancel = loops(4, "<cancel sendid='x'/>");
+    for fine in [&send, &cancel] {
+        assert!(session(&document(fine)).is_running());
+    }
+    let both = fails(&document(&format!("{send}{cancel}")));
+    assert!(both.to_string().contains("steps of evaluation"), "{both}");
+    // A conversion takes more steps the longer the array is.
+    let compare = loops(2, "<if cond=\"long == 'x'\"/>");
+    let converting = |last: u32| document(&format!("<script>long = []; long[{last}] = 1</script>{compare}"));
+    assert!(session(&converting(10)).is_running());
+    let long = fails(&converting(262_143));
+    assert!(long.to_string().contains("steps of evaluation"), "{long}");
+}
+
+#[test]
 fn sessions_do_not_nest_for_ever() {
     let own = document(
         "<state id='s'><invoke src='self'/><transition event='error.communication'><log expr='_event.data'/></transition></state>",
