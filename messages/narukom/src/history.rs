@@ -14,6 +14,8 @@ pub(crate) struct History<'a> {
     /// The index of the first delivered message within the depth.
     first: usize,
     own: Option<&'a Outbox>,
+    /// The number of own messages beyond the depth.
+    surplus: usize,
     /// Older messages are ignored.
     oldest: Timestamp,
 }
@@ -35,16 +37,17 @@ impl<'a> History<'a> {
     #[inline]
     pub(crate) fn new(reading: &'a Inbox, writing: Option<&'a Outbox>, now: Timestamp) -> History<'a> {
         let (samples, oldest) = (reading.samples(), reading.oldest(now));
-        let own = writing.map_or(0, |writing| writing.visible().count());
-        let surplus = (samples.len() + own).saturating_sub(reading.limit()).min(samples.len());
+        let own = writing.map_or(0, Outbox::visible_count);
+        let surplus = (samples.len() + own).saturating_sub(reading.limit());
+        let (first, surplus) = (surplus.min(samples.len()), surplus.saturating_sub(samples.len()));
         let expired = if oldest == Timestamp::ZERO { 0 } else { before(samples, oldest) };
-        History { samples, first: surplus.max(expired), own: writing.filter(|_| own > 0), oldest }
+        History { samples, first: first.max(expired), own: writing.filter(|_| own > 0), surplus, oldest }
     }
 
     #[inline]
     fn own(&self) -> impl DoubleEndedIterator<Item = &'a AnySample> + use<'a> {
-        let oldest = self.oldest;
-        let own = self.own.into_iter().flat_map(|writing| writing.visible());
+        let (oldest, surplus) = (self.oldest, self.surplus);
+        let own = self.own.into_iter().flat_map(move |writing| writing.visible_from(surplus));
         own.filter(move |sample| sample.header.local >= oldest)
     }
 

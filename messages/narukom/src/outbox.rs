@@ -73,8 +73,30 @@ impl Outbox {
     /// The readable own and inherited messages, oldest first.
     #[inline]
     pub(crate) fn visible(&self) -> impl DoubleEndedIterator<Item = &AnySample> {
-        let own = self.own.iter().filter(|own| own.nth > self.hidden).map(|own| &own.sample);
-        self.inherited.iter().chain(own)
+        self.visible_from(0)
+    }
+
+    /// The readable own and inherited messages without the `first` oldest, oldest first.
+    #[inline]
+    pub(crate) fn visible_from(&self, first: usize) -> impl DoubleEndedIterator<Item = &AnySample> {
+        let inherited = self.inherited.get(first..).unwrap_or_default();
+        let place = self.hidden_count() + first.saturating_sub(self.inherited.len());
+        let own = self.own.range(place.min(self.own.len())..);
+        inherited.iter().chain(own.map(|own| &own.sample))
+    }
+
+    /// The number of readable messages.
+    #[inline]
+    pub(crate) fn visible_count(&self) -> usize {
+        self.inherited.len() + self.own.len() - self.hidden_count()
+    }
+
+    /// The number of own messages that are not read. Own messages are numbered without gaps up to
+    /// the last one written.
+    #[inline]
+    fn hidden_count(&self) -> usize {
+        let before = self.written - self.own.len() as u64;
+        (self.hidden.saturating_sub(before) as usize).min(self.own.len())
     }
 
     /// Whether the end of the cycle has work to do here.

@@ -216,10 +216,7 @@ impl Model {
             TestedKind::Signal => usize::MAX,
             TestedKind::Data => 4,
         };
-        // OwnMessage messages are shown even when they exceed the depth.
-        let own = state.visible_own().count().max(1);
-        let shown = if KINDS[way] == TestedKind::State { 1 } else { depth.max(own) };
-        (values.split_off(values.len().saturating_sub(shown)), state.lost)
+        (values.split_off(values.len().saturating_sub(depth)), state.lost)
     }
 
     fn adopt(&mut self, board: usize, other: usize) {

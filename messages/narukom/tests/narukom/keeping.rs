@@ -4,7 +4,7 @@
 use std::time::Duration;
 
 use crate::messages::*;
-use narukom::{Blackboard, Timestamp};
+use narukom::{AnySample, Blackboard, Timestamp};
 
 fn signals(blackboard: &Blackboard) -> Vec<u64> {
     blackboard.signals(SIGNAL).map(|mark| mark.number).collect()
@@ -158,6 +158,41 @@ fn own_data_is_in_the_history_before_its_delivery() {
     assert_eq!(taker.nearest(DATA, at(49)).unwrap().number, 5);
     assert_eq!(taker.nearest(DATA, at(42)).unwrap().number, 4);
     assert_eq!(taker.nearest_not_older(DATA, at(41)).unwrap().number, 5);
+}
+
+#[test]
+fn own_messages_that_wait_do_not_exceed_what_a_topic_keeps() {
+    let hub = hub();
+    let mut robot = hub.blackboard("robot");
+    let (state, data) = (robot.slot("test/state").unwrap(), robot.slot("test/data").unwrap());
+    let depth = hub.declaration(data).unwrap().depth() as u64;
+    let numbers = |samples: &mut dyn Iterator<Item = &AnySample>| -> Vec<u64> {
+        samples.map(|sample| sample.downcast::<Mark>().unwrap().number).collect()
+    };
+    robot.publish(STATE, Mark::new(1)).unwrap();
+    robot.publish(STATE, Mark::new(2)).unwrap();
+    assert_eq!(numbers(&mut robot.samples(state)), [2]);
+    for number in 1..=depth + 2 {
+        robot.publish(DATA, Mark::new(number)).unwrap();
+    }
+    let kept: Vec<u64> = (3..=depth + 2).collect();
+    assert_eq!(numbers(&mut robot.samples(data)), kept);
+    let recent: Vec<u64> = robot.recent(DATA, Duration::from_secs(1)).map(|mark| mark.number).collect();
+    assert_eq!(recent, kept);
+    assert_eq!(robot.nearest_not_older(DATA, Timestamp::ZERO).unwrap().number, 3);
+    // What a region took over counts too, and messages that it hides do not.
+    let mut region = hub.blackboard("region");
+    region.publish(DATA, Mark::new(99)).unwrap();
+    region.adopt(&robot);
+    region.publish(DATA, Mark::new(depth + 3)).unwrap();
+    let kept: Vec<u64> = (4..=depth + 3).collect();
+    assert_eq!(numbers(&mut region.samples(data)), kept);
+    // All are published.
+    robot.publish_all(at(1));
+    region.publish_all(at(1));
+    let mut reader = hub.blackboard("reader");
+    reader.process_messages(at(1));
+    assert_eq!(numbers(&mut reader.samples(data)).last(), Some(&(depth + 3)));
 }
 
 #[test]
