@@ -71,7 +71,6 @@ pub struct Blackboard {
     cancellation: Cancellation,
 }
 
-/// Begin and end of a cycle.
 /// Constructors.
 impl Hub {
     /// Creates a blackboard for an agent, or for a region of one, that publishes under the name
@@ -121,7 +120,10 @@ impl Blackboard {
     pub fn part(&self) -> u16 {
         self.sender.part
     }
+}
 
+/// Begin and end of a cycle.
+impl Blackboard {
     /// Begins a cycle: drops the signals of the last cycle and delivers what was published on the
     /// hub since then.
     pub fn process_messages(&mut self, now: Timestamp) {
