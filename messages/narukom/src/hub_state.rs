@@ -70,14 +70,14 @@ struct TopicRings {
 
 impl HubState {
     pub(crate) fn new(host: Arc<str>, topics: &[TopicDeclaration]) -> HubState {
-        let shelf = |topic: &TopicDeclaration| TopicRings {
+        let rings = |topic: &TopicDeclaration| TopicRings {
             local: Ring::new(topic.depth()),
             remote_rings: Vec::new(),
         };
         HubState {
             front: None,
             order: 0,
-            topic_rings: topics.iter().map(shelf).collect(),
+            topic_rings: topics.iter().map(rings).collect(),
             journal: VecDeque::with_capacity(JOURNAL_LENGTH),
             hosts: vec![host],
             publishers: Vec::new(),
@@ -144,8 +144,8 @@ impl HubState {
     pub(crate) fn publish(&mut self, message: &mut OutgoingMessage, now: Timestamp, is_observed: bool) {
         self.move_front_to_ring();
         let Header { host, publisher, part, topic, .. } = message.header;
-        let Some(shelf) = self.topic_rings.get_mut(topic.index()) else { return };
-        let sequence = shelf.local.next_sequence(publisher);
+        let Some(rings) = self.topic_rings.get_mut(topic.index()) else { return };
+        let sequence = rings.local.next_sequence(publisher);
         let (published, local, received) = (now, now, now);
         let header = Header { host, publisher, part, topic, sequence, published, local, received };
         self.put(message, header, is_observed);
@@ -200,26 +200,26 @@ impl HubState {
     /// The ring of a channel; `None` before the first message of another host.
     #[inline]
     pub(crate) fn ring(&self, channel: Channel) -> Option<&Ring> {
-        let shelf = self.topic_rings.get(channel.topic.index())?;
+        let rings = self.topic_rings.get(channel.topic.index())?;
         if channel.host == HostId::LOCAL {
-            return Some(&shelf.local);
+            return Some(&rings.local);
         }
-        shelf.remote_rings.iter().find(|(host, _)| *host == channel.host).map(|(_, ring)| ring)
+        rings.remote_rings.iter().find(|(host, _)| *host == channel.host).map(|(_, ring)| ring)
     }
 
     /// Like [`ring`](HubState::ring), created if necessary.
     #[inline]
     pub(crate) fn ring_mut(&mut self, channel: Channel) -> Option<&mut Ring> {
-        let shelf = self.topic_rings.get_mut(channel.topic.index())?;
+        let rings = self.topic_rings.get_mut(channel.topic.index())?;
         if channel.host == HostId::LOCAL {
-            return Some(&mut shelf.local);
+            return Some(&mut rings.local);
         }
-        let known = shelf.remote_rings.iter().position(|(host, _)| *host == channel.host);
+        let known = rings.remote_rings.iter().position(|(host, _)| *host == channel.host);
         let place = known.unwrap_or_else(|| {
-            shelf.remote_rings.push((channel.host, Ring::new(shelf.local.capacity())));
-            shelf.remote_rings.len() - 1
+            rings.remote_rings.push((channel.host, Ring::new(rings.local.capacity())));
+            rings.remote_rings.len() - 1
         });
-        Some(&mut shelf.remote_rings[place].1)
+        Some(&mut rings.remote_rings[place].1)
     }
 
     /// The newest message of a channel.
@@ -229,8 +229,8 @@ impl HubState {
 
     /// The hosts other than its own that have published on a topic.
     pub(crate) fn hosts_of(&self, topic: TopicSlot) -> impl Iterator<Item = HostId> {
-        let shelf = self.topic_rings.get(topic.index());
-        shelf.into_iter().flat_map(|shelf| shelf.remote_rings.iter().map(|(host, _)| *host))
+        let rings = self.topic_rings.get(topic.index());
+        rings.into_iter().flat_map(|rings| rings.remote_rings.iter().map(|(host, _)| *host))
     }
 
     /// The number of the last publication.
