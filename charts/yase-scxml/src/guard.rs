@@ -45,8 +45,9 @@ pub(crate) fn condition_text(chart: &Statechart, guard: &Expression) -> Option<S
         ExpressionKind::Script(text) => Some(text.clone()),
         ExpressionKind::Bool(value) => Some(value.to_string()),
         ExpressionKind::In(state) => {
-            let node = chart.find(&state.text)?;
-            Some(format!("In({})", quoted(&chart.node(node).name)))
+            let name = &chart.node(chart.find(&state.text)?).name;
+            // Regions without a name have no id in SCXML.
+            (!name.is_empty()).then(|| format!("In({})", quoted(name)))
         }
         ExpressionKind::Not(operand) => {
             let text = condition_text(chart, operand)?;

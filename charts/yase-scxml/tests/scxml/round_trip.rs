@@ -204,6 +204,27 @@ fn features_without_scxml_are_rejected_by_name() {
 }
 
 #[test]
+fn a_guard_on_a_region_without_a_name_is_rejected() {
+    let mut chart = Statechart::new("c");
+    let start = chart.add(Statechart::ROOT, Node::new(NodeKind::Start, ""));
+    let both = chart.add(Statechart::ROOT, Node::new(NodeKind::And, "both"));
+    let last = chart.add(Statechart::ROOT, Node::new(NodeKind::Basic, "last"));
+    for name in ["", "named"] {
+        let region = chart.add(both, Node::new(NodeKind::Or, name));
+        let begin = chart.add(region, Node::new(NodeKind::Start, ""));
+        let state = chart.add(region, Node::new(NodeKind::Basic, format!("in_{name}")));
+        chart.connect(Transition::new(begin, state));
+    }
+    chart.connect(Transition::new(start, both));
+    for guard in ["[In(both/1)]", "[In(both/named)]"] {
+        let expression = parse_transition(guard).0;
+        chart.connect(Transition { expression, ..Transition::new(both, last) });
+    }
+    let refused: Vec<String> = write(&chart).unwrap_err().into_iter().map(|found| found.message).collect();
+    assert_eq!(refused, ["the guard `In(both/1)` cannot be said in SCXML"]);
+}
+
+#[test]
 fn texts_keep_their_odd_characters() {
     let mut chart = Statechart::new("a \"<&>\" name\twith\nblanks");
     let start = chart.add(Statechart::ROOT, Node::new(NodeKind::Start, ""));
