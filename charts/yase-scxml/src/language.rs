@@ -3,8 +3,8 @@
 //! Values are those of ECMAScript (undefined, null, booleans, numbers, texts, arrays, objects,
 //! functions), with its conversions; objects are passed by reference. Features that need a complete
 //! engine are not supported: loops, classes, prototypes, exceptions, regular expressions, most of
-//! the library. They are [refused](Refusal::Unsupported) when a document is read. Text that is not
-//! ECMAScript is not refused: by the recommendation it raises `error.execution` when it is
+//! the library. They are [refused](ScriptErrorKind::Unsupported) when a document is read. Text that
+//! is not ECMAScript is not refused: by the recommendation it raises `error.execution` when it is
 //! executed.
 //!
 //! ```text
