@@ -31,18 +31,18 @@ impl ContentExecutor<'_> {
             }
             (None, None) => None,
         };
-        let letter = match self.letter(send, id.clone()) {
-            Ok(letter) => letter,
+        let request = match self.send_request(send, id.clone()) {
+            Ok(request) => request,
             Err(fault) => {
                 let error = ScxmlEvent { send_id: id, ..ScxmlEvent::error("error.execution", fault.message) };
                 self.raise(error)?;
                 return Err(ExecutionAbort::AlreadyReported);
             }
         };
-        self.post(letter)
+        self.send_event(request)
     }
 
-    fn letter(&mut self, send: &Send, id: Option<String>) -> Result<SendRequest, EvalError> {
+    fn send_request(&mut self, send: &Send, id: Option<String>) -> Result<SendRequest, EvalError> {
         let name = send.event.as_ref().map(|event| self.text(event)).transpose()?.unwrap_or_default();
         let kind = send.kind.as_ref().map(|kind| self.text(kind)).transpose()?;
         let target = send.target.as_ref().map(|target| self.text(target)).transpose()?;
@@ -70,8 +70,8 @@ impl ContentExecutor<'_> {
         Ok(SendRequest { event, target, delay })
     }
 
-    fn post(&mut self, letter: SendRequest) -> Completion {
-        let SendRequest { event, target, delay } = letter;
+    fn send_event(&mut self, request: SendRequest) -> Completion {
+        let SendRequest { event, target, delay } = request;
         if target == SendTarget::Internal {
             return Ok(self.raise(event)?);
         }
