@@ -101,16 +101,16 @@ impl Link {
             next_report: Timestamp::ZERO,
             next_poll: Timestamp::ZERO,
         };
-        let desk = Arc::new(LinkState(Mutex::new(Some(worker))));
-        let (bringer, looker) = (desk.clone(), desk.clone());
+        let state = Arc::new(LinkState(Mutex::new(Some(worker))));
+        let (receiving, reporting) = (state.clone(), state.clone());
         let (waiting, stops) = (inbox.clone(), shared.clone());
         let name = format!("{} link", hub.host());
         let thread = thread::Builder::new()
             .name(name)
-            .spawn(move || desk.run_worker(&waiting, &stops.stops))
+            .spawn(move || state.run_worker(&waiting, &stops.stops))
             .map_err(|error| Error::new(ErrorKind::Thread, format!("no thread for the link: {error}")))?;
-        inbox.set_taker(Box::new(move || bringer.take_in()));
-        Ok(Link { inbox, shared, state: looker, thread: Some(thread) })
+        inbox.set_taker(Box::new(move || receiving.take_in()));
+        Ok(Link { inbox, shared, state: reporting, thread: Some(thread) })
     }
 
     /// Wakes the link when something is published; to be passed to [`narukom::Hub::set_waker`].

@@ -302,15 +302,15 @@ impl Node {
 
     fn next_message(&mut self, now: Timestamp) -> Option<Packet> {
         while let Some((priority, _, topic)) = self.ready.pop_first() {
-            let parcel = self.outgoing[topic].send(now);
+            let batch = self.outgoing[topic].send(now);
             self.mark_ready(topic);
-            if let Some(parcel) = parcel {
+            if let Some(batch) = batch {
                 return Some(Packet {
                     from: self.host.clone(),
-                    to: parcel.to,
+                    to: batch.to,
                     path: Some(self.send[topic].path.clone()),
-                    stamp: parcel.stamp,
-                    payload: parcel.payload,
+                    stamp: batch.stamp,
+                    payload: batch.payload,
                     priority,
                     is_reliable: self.send[topic].reliability == Reliability::Reliable,
                 });

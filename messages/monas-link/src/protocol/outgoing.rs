@@ -104,8 +104,8 @@ impl OutgoingStream {
     /// The next message to send: retransmissions before new ones.
     pub(crate) fn send(&mut self, now: Timestamp) -> Option<OutgoingBatch> {
         while let Some((number, to)) = self.repairs.pop_first() {
-            if let Some(parcel) = self.resend(number, to, now) {
-                return Some(parcel);
+            if let Some(batch) = self.resend(number, to, now) {
+                return Some(batch);
             }
         }
         self.send_new()
@@ -122,14 +122,14 @@ impl OutgoingStream {
 
     fn send_new(&mut self) -> Option<OutgoingBatch> {
         let kept = &self.retained[self.place(self.next)?];
-        let parcel = OutgoingBatch { to: None, stamp: kept.stamp.clone(), payload: kept.payload.clone() };
+        let batch = OutgoingBatch { to: None, stamp: kept.stamp.clone(), payload: kept.payload.clone() };
         self.counted.sent += 1;
-        self.counted.bytes += (parcel.stamp.len() + parcel.payload.len()) as u64;
+        self.counted.bytes += (batch.stamp.len() + batch.payload.len()) as u64;
         self.next += 1;
         while !self.repeats && self.retained.front().is_some_and(|oldest| oldest.number < self.next) {
             self.drop_oldest();
         }
-        Some(parcel)
+        Some(batch)
     }
 
     /// The index of the message with a number.

@@ -62,8 +62,8 @@ impl Node {
         if let Some(place) = silent {
             let mut peer = self.peers.swap_remove(place);
             let name = peer.name.clone();
-            let mut desk = DeliveryContext::new(&name, peer.clock.offset(), now, &mut self.deliveries);
-            peer.end(&mut |topic, message| desk.deliver(topic, message));
+            let mut context = DeliveryContext::new(&name, peer.clock.offset(), now, &mut self.deliveries);
+            peer.end(&mut |topic, message| context.deliver(topic, message));
         }
     }
 
@@ -117,8 +117,8 @@ impl Node {
         }
         if peer.incarnation != Some(incarnation) {
             let name = peer.name.clone();
-            let mut desk = DeliveryContext::new(&name, peer.clock.offset(), now, &mut self.deliveries);
-            peer.begin(incarnation, total, now, &mut |topic, message| desk.deliver(topic, message));
+            let mut context = DeliveryContext::new(&name, peer.clock.offset(), now, &mut self.deliveries);
+            peer.begin(incarnation, total, now, &mut |topic, message| context.deliver(topic, message));
             self.mismatches.retain(|(host, _), _| **host != *name);
             // A host that has just started does not know this one.
             self.introductions.is_asked = true;
@@ -181,12 +181,12 @@ impl Node {
             peer.clock.measure(sent, heard, answered, now);
         }
         let (name, offset) = (peer.name.clone(), peer.clock.offset());
-        let mut desk = DeliveryContext::new(&name, offset, now, &mut self.deliveries);
+        let mut context = DeliveryContext::new(&name, offset, now, &mut self.deliveries);
         for head in &beat.heads {
             if let Some(Some(PeerTopic { state: PeerTopicState::Read { topic, incoming }, .. })) =
                 peer.topics.get_mut(head.offer as usize)
             {
-                incoming.head(head.first, head.last, &mut |message| desk.deliver(*topic, message));
+                incoming.head(head.first, head.last, &mut |message| context.deliver(*topic, message));
             }
         }
         self.schedule_beat_if_missing(place, now);
@@ -282,9 +282,9 @@ impl Node {
                 counted.bytes += packet.payload.len() as u64;
             }
             PeerTopicState::Read { topic, incoming } => {
-                let mut desk =
+                let mut context =
                     DeliveryContext::new(&packet.from, peer.clock.offset(), now, &mut self.deliveries);
-                let mut deliver = |message| desk.deliver(*topic, message);
+                let mut deliver = |message| context.deliver(*topic, message);
                 incoming.arrive(number, message, &mut deliver);
                 if held + packet.payload.len() > ALL_HELD_BYTES {
                     incoming.end(&mut deliver);
