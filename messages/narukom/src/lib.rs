@@ -207,7 +207,7 @@ pub use publisher::{AnyPublisher, Publisher};
 pub use random::Random;
 pub use receiver::{Receiver, RemoteHeader};
 pub use sample::{AnySample, Header, HostId, PublisherId, Sample, TopicSlot};
-pub use subscriber::{Subscriber, pattern_fits};
+pub use subscriber::{Subscriber, is_topic_pattern, pattern_fits};
 pub use timestamp::Timestamp;
 #[doc(hidden)]
 pub use topic::is_topic_path;

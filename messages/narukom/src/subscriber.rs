@@ -94,7 +94,7 @@ impl fmt::Debug for Subscriber {
 
 /// The topics that match `pattern`.
 pub(crate) fn matching(catalogue: &TopicTable, pattern: &str) -> Result<Vec<TopicSlot>, Error> {
-    if !is_pattern(pattern) {
+    if !is_topic_pattern(pattern) {
         let text = format!(
             "`{pattern}` is no pattern: a topic's path, of which `*` stands for a segment, a last `**` for any"
         );
@@ -106,7 +106,9 @@ pub(crate) fn matching(catalogue: &TopicTable, pattern: &str) -> Result<Vec<Topi
     if slots.is_empty() { Err(catalogue.undeclared(pattern)) } else { Ok(slots) }
 }
 
-fn is_pattern(pattern: &str) -> bool {
+/// Whether `pattern` is well formed, with the syntax of
+/// [`Hub::subscriber`](crate::Hub::subscriber).
+pub fn is_topic_pattern(pattern: &str) -> bool {
     let segments = pattern.strip_suffix("/**").unwrap_or(pattern);
     pattern == "**" || segments.split('/').all(|segment| segment == "*" || is_topic_path(segment))
 }
@@ -114,7 +116,7 @@ fn is_pattern(pattern: &str) -> bool {
 /// Whether a pattern, with the syntax of [`Hub::subscriber`](crate::Hub::subscriber), matches a
 /// topic's `path`. One that is not well formed matches none.
 pub fn pattern_fits(pattern: &str, path: &str) -> bool {
-    is_pattern(pattern) && fits(pattern, path)
+    is_topic_pattern(pattern) && fits(pattern, path)
 }
 
 /// Whether a well-formed `pattern` matches a topic's `path`.
@@ -133,7 +135,7 @@ fn fits(pattern: &str, path: &str) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::{fits, is_pattern};
+    use super::{fits, is_topic_pattern};
 
     #[test]
     fn patterns_fit_by_segment() {
@@ -152,10 +154,10 @@ mod tests {
     #[test]
     fn patterns_are_paths_with_stars() {
         for pattern in ["a", "a/b", "*", "**", "a/*/b", "a/**", "*/**"] {
-            assert!(is_pattern(pattern), "{pattern}");
+            assert!(is_topic_pattern(pattern), "{pattern}");
         }
         for pattern in ["", "/", "a/", "a**", "**/a", "a*", "A", "***", "a//**", "/**"] {
-            assert!(!is_pattern(pattern), "{pattern}");
+            assert!(!is_topic_pattern(pattern), "{pattern}");
         }
     }
 }

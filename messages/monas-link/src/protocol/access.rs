@@ -2,11 +2,13 @@
 
 use std::collections::BTreeMap;
 
+use narukom::{is_topic_pattern, pattern_fits};
 use thiserror::Error;
 
 /// Lists which hosts may publish on which topics, and which may manage agents.
 ///
-/// Each line is one rule: a host, a right, and its topics. A `#` starts a comment.
+/// Each line is one rule: a host, a right, and its topics, a pattern with the syntax of
+/// [`narukom::Hub::subscriber`]. A `#` starts a comment.
 ///
 /// ```text
 /// robot_2  publish  soccer/**      # whatever it sees
@@ -62,7 +64,7 @@ impl AccessList {
         let words: Vec<&str> = rule.split_whitespace().collect();
         match words[..] {
             [] => return Ok(()),
-            [host, "publish", pattern] if is_pattern(pattern) => {
+            [host, "publish", pattern] if is_topic_pattern(pattern) => {
                 self.rights(host).publish.push(pattern.to_owned());
             }
             [_, "publish", pattern] => {
@@ -89,7 +91,7 @@ impl AccessList {
 
     /// Whether `host` may publish on the topic at `path`.
     pub fn may_publish(&self, host: &str, path: &str) -> bool {
-        let allows = |rights: &AccessRights| rights.publish.iter().any(|pattern| fits(pattern, path));
+        let allows = |rights: &AccessRights| rights.publish.iter().any(|pattern| pattern_fits(pattern, path));
         self.is_open || self.rights_of(host).any(allows)
     }
 
@@ -112,30 +114,6 @@ impl AccessList {
     pub fn publishers(&self) -> impl Iterator<Item = (&str, &[String])> {
         self.rules.iter().map(|(host, rights)| (host.as_str(), rights.publish.as_slice()))
     }
-}
-
-fn is_pattern(pattern: &str) -> bool {
-    let is_segment = |segment: &str| {
-        segment == "*"
-            || !segment.is_empty()
-                && segment.bytes().all(|b| b.is_ascii_lowercase() || b.is_ascii_digit() || b == b'_')
-    };
-    pattern == "**" || pattern.strip_suffix("/**").unwrap_or(pattern).split('/').all(is_segment)
-}
-
-/// Whether a pattern matches a topic's path: `*` stands for one segment, a final `**` for one or
-/// more.
-pub(crate) fn fits(pattern: &str, path: &str) -> bool {
-    let mut segments = path.split('/');
-    for part in pattern.split('/') {
-        match (part, segments.next()) {
-            ("**", Some(_)) => return true,
-            ("*", Some(_)) => {}
-            (part, Some(segment)) if part == segment => {}
-            _ => return false,
-        }
-    }
-    segments.next().is_none()
 }
 
 #[cfg(test)]
