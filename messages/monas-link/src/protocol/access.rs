@@ -17,7 +17,8 @@ use thiserror::Error;
 /// *        publish  soccer/hello   # all hosts
 /// ```
 ///
-/// Everything else is forbidden.
+/// Everything else is forbidden. A transport that checks certificates lets only hosts publish that
+/// the list names, also what `*` permits: otherwise each host could use the names of all others.
 #[derive(Clone, PartialEq, Eq, Default, Debug)]
 pub struct AccessList {
     /// By host; `*` stands for every host.
@@ -110,7 +111,7 @@ impl AccessList {
     }
 
     /// The listed hosts, with the patterns of topics that each may publish; those of `*` apply to
-    /// every host.
+    /// every host, with certificates to every listed one.
     pub fn publishers(&self) -> impl Iterator<Item = (&str, &[String])> {
         self.rules.iter().map(|(host, rights)| (host.as_str(), rights.publish.as_slice()))
     }

@@ -23,8 +23,9 @@ pub struct ZenohSettings {
     /// Whether large messages use shared memory to processes of the same user on the same computer.
     pub shared_memory: bool,
     /// Certificates, for `tls/` endpoints. With them the access list is also checked against the
-    /// common name of each peer's certificate. Without them only the protocol checks it, which has
-    /// to trust the names that others claim.
+    /// common name of each peer's certificate, and hosts that the list does not name publish
+    /// nothing, also not what `*` permits. Without them only the protocol checks it, which has to
+    /// trust the names that others claim.
     pub tls: Option<Tls>,
     /// The most simultaneous connections.
     pub sessions: usize,
@@ -150,6 +151,10 @@ fn list(values: &[String]) -> String {
 /// The access list as zenoh configuration: each peer may put what the name in its certificate
 /// allows, under its own name only, and every listed host may introduce itself. All may subscribe,
 /// and outgoing messages are not filtered.
+///
+/// The rules of `*` are added to those of each listed host. One rule for all subjects would need
+/// keys with any host, since keys cannot refer to the certificate, and each peer could then publish
+/// under the names of others.
 fn access_control(access: &AccessList, realm: &str) -> String {
     let mut rules = vec![
         r#"{"id":"read","messages":["declare_subscriber"],"flows":["ingress","egress"],"permission":"allow","key_exprs":["**"]}"#.to_owned(),
@@ -196,6 +201,8 @@ mod tests {
         assert!(rules.contains("monas/robot_2/m/soccer/ball"), "{rules}");
         assert!(!rules.contains("monas/robot_2/m/soccer/**"), "{rules}");
         assert!(rules.contains("monas/robot_2/m/soccer/hello"), "{rules}");
+        // No peer may use the names of others.
+        assert!(!rules.contains("monas/*"), "{rules}");
     }
 
     #[test]
