@@ -389,11 +389,6 @@ impl Channel {
         &self.schema.name
     }
 
-    /// The host whose hub was recorded.
-    pub fn recorded_by(&self) -> &str {
-        self.received_by.as_deref().unwrap_or(&self.host)
-    }
-
     /// Whether messages can be decoded: they are protobuf, and their schema is present.
     pub fn is_protobuf(&self) -> bool {
         self.encoding == PROTOBUF && self.schema.encoding == PROTOBUF

@@ -46,11 +46,6 @@ impl Blackboard {
         self.from(HostId::LOCAL).samples(slot)
     }
 
-    /// Like [`latest`](Blackboard::latest), for a topic known by its path.
-    pub fn read_by_name(&self, path: &str) -> Option<&dyn AnyMessage> {
-        self.latest(self.slot(path)?)
-    }
-
     /// The newest message of a topic, for inspection: it does not subscribe the blackboard to the
     /// topic, and own signals are still delivered.
     pub fn peek(&self, slot: TopicSlot) -> Option<AnySample> {

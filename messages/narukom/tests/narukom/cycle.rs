@@ -179,9 +179,9 @@ fn undeclared_topics_are_refused_with_the_nearest_name() {
 fn topics_are_published_and_read_by_name() {
     let mut robot = hub().blackboard("robot");
     robot.publish_by_name("test/state", Box::new(Mark::new(7))).unwrap();
-    let message = robot.read_by_name("test/state").unwrap();
+    let message = robot.latest(robot.slot("test/state").unwrap()).unwrap();
     assert!(matches!(message.field(0), FieldValue::Uint(7)));
-    assert!(robot.read_by_name("test/stat").is_none());
+    assert!(robot.slot("test/stat").is_none());
     let error = robot.publish_by_name("test/state", Box::new(Other::default())).unwrap_err();
     assert_eq!(error.kind(), ErrorKind::WrongType);
     assert!(error.to_string().contains("narukom.test.Other"), "{error}");
