@@ -133,8 +133,8 @@ impl Compiler {
         let mut config = prost_build::Config::new();
         config.btree_map(["."]).prost_path("::narukom::prost");
         let others = self.modules.iter().filter(|(other, _)| other != package);
-        // The path of a package would also be that of the packages whose names continue its name. If
-        // the generated package is one of these, the types of the outer one are mapped one by one.
+        // The path of a package would also be that of the packages whose names continue its name.
+        // If the generated package is one of these, the types of the outer one are mapped singly.
         let is_outer = |other: &str| types::inside(&format!(".{package}."), other).is_some();
         let (outer, plain): (Vec<_>, Vec<_>) = others.partition(|(other, _)| is_outer(other));
         for (other, module) in plain {

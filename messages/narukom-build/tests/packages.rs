@@ -52,7 +52,7 @@ fn each_package_has_its_own_types_and_uses_those_of_the_other() {
     };
     let report = Report {
         role: report::Role::Goalie.into(),
-        place: Some(report::Place { x: 1.0 }),
+        position: Some(report::Position { x: 1.0 }),
         seen: Some(seen),
         ..Report::default()
     };

@@ -88,16 +88,16 @@ impl Colour {
         }
     }
 }
-/// What a robot tells its team.
+/// The report of a robot to its team.
 #[derive(Clone, PartialEq, ::narukom::prost::Message)]
 #[prost(prost_path = "::narukom::prost")]
 pub struct Report {
     /// Its role.
     #[prost(enumeration = "report::Role", tag = "1")]
     pub role: i32,
-    /// Its place.
+    /// Its position.
     #[prost(message, optional, tag = "2")]
-    pub place: ::core::option::Option<report::Place>,
+    pub position: ::core::option::Option<report::Position>,
     /// The ball it has seen.
     #[prost(message, optional, tag = "3")]
     pub seen: ::core::option::Option<crate::Seen>,
@@ -113,10 +113,10 @@ pub struct Report {
 }
 /// Nested message and enum types in `Report`.
 pub mod report {
-    /// Where the robot stands.
+    /// The position of a robot.
     #[derive(Clone, Copy, PartialEq, ::narukom::prost::Message)]
     #[prost(prost_path = "::narukom::prost")]
-    pub struct Place {
+    pub struct Position {
         #[prost(double, tag = "1")]
         pub x: f64,
     }
@@ -203,7 +203,7 @@ const _: () = {
                 static MESSAGE: ::narukom::MessageDescriptor = ::narukom::MessageDescriptor {
                     full_name: "team.Report",
                     name: "Report",
-                    fields: &[::narukom::FieldDescriptor { name: "role", tag: 1, kind: ::narukom::FieldKind::Enum(<report::Role as ::narukom::Enumeration>::DESCRIPTOR) },::narukom::FieldDescriptor { name: "place", tag: 2, kind: ::narukom::FieldKind::Message(|| <report::Place as ::narukom::Message>::DESCRIPTOR) },::narukom::FieldDescriptor { name: "seen", tag: 3, kind: ::narukom::FieldKind::Message(|| <crate::Seen as ::narukom::Message>::DESCRIPTOR) },::narukom::FieldDescriptor { name: "distances", tag: 4, kind: ::narukom::FieldKind::Unsupported },::narukom::FieldDescriptor { name: "log", tag: 5, kind: ::narukom::FieldKind::Message(|| <crate::LogEntry as ::narukom::Message>::DESCRIPTOR) },],
+                    fields: &[::narukom::FieldDescriptor { name: "role", tag: 1, kind: ::narukom::FieldKind::Enum(<report::Role as ::narukom::Enumeration>::DESCRIPTOR) },::narukom::FieldDescriptor { name: "position", tag: 2, kind: ::narukom::FieldKind::Message(|| <report::Position as ::narukom::Message>::DESCRIPTOR) },::narukom::FieldDescriptor { name: "seen", tag: 3, kind: ::narukom::FieldKind::Message(|| <crate::Seen as ::narukom::Message>::DESCRIPTOR) },::narukom::FieldDescriptor { name: "distances", tag: 4, kind: ::narukom::FieldKind::Unsupported },::narukom::FieldDescriptor { name: "log", tag: 5, kind: ::narukom::FieldKind::Message(|| <crate::LogEntry as ::narukom::Message>::DESCRIPTOR) },],
                     file_descriptor_set: FILE_DESCRIPTOR_SET,
                 };
                 impl ::narukom::Message for Report {
@@ -212,14 +212,14 @@ const _: () = {
                 impl ::narukom::Reflect for Report {
                     fn descriptor(&self) -> &'static ::narukom::MessageDescriptor { &MESSAGE }
                     fn field(&self, index: usize) -> ::narukom::FieldValue<'_> {
-                        match index { 0 => { let value = self.role; ::narukom::FieldValue::Enum(value) },1 => self.place.as_ref().map_or(::narukom::FieldValue::Missing, |value| ::narukom::FieldValue::Message(value.as_message())),2 => self.seen.as_ref().map_or(::narukom::FieldValue::Missing, |value| ::narukom::FieldValue::Message(value.as_message())),3 => ::narukom::FieldValue::Unsupported,4 => self.log.as_ref().map_or(::narukom::FieldValue::Missing, |value| ::narukom::FieldValue::Message(value.as_message())), _ => ::narukom::FieldValue::Missing }
+                        match index { 0 => { let value = self.role; ::narukom::FieldValue::Enum(value) },1 => self.position.as_ref().map_or(::narukom::FieldValue::Missing, |value| ::narukom::FieldValue::Message(value.as_message())),2 => self.seen.as_ref().map_or(::narukom::FieldValue::Missing, |value| ::narukom::FieldValue::Message(value.as_message())),3 => ::narukom::FieldValue::Unsupported,4 => self.log.as_ref().map_or(::narukom::FieldValue::Missing, |value| ::narukom::FieldValue::Message(value.as_message())), _ => ::narukom::FieldValue::Missing }
                     }
                     fn set_field(&mut self, index: usize, value: ::narukom::FieldValue<'_>)
                         -> Result<(), ::narukom::FieldError> {
-                        match index { 0 => { self.role = ::narukom::generated::enumeration(value, "role")?; Ok(()) },1 => { self.place = ::narukom::generated::message::<report::Place>(value, "place")?.map(Into::into); Ok(()) },2 => { self.seen = ::narukom::generated::message::<crate::Seen>(value, "seen")?.map(Into::into); Ok(()) },3 => Err(::narukom::FieldError::Unsupported { field: "distances" }),4 => { self.log = ::narukom::generated::message::<crate::LogEntry>(value, "log")?.map(Into::into); Ok(()) }, _ => Err(::narukom::FieldError::NoSuchField) }
+                        match index { 0 => { self.role = ::narukom::generated::enumeration(value, "role")?; Ok(()) },1 => { self.position = ::narukom::generated::message::<report::Position>(value, "position")?.map(Into::into); Ok(()) },2 => { self.seen = ::narukom::generated::message::<crate::Seen>(value, "seen")?.map(Into::into); Ok(()) },3 => Err(::narukom::FieldError::Unsupported { field: "distances" }),4 => { self.log = ::narukom::generated::message::<crate::LogEntry>(value, "log")?.map(Into::into); Ok(()) }, _ => Err(::narukom::FieldError::NoSuchField) }
                     }
                     fn message_mut(&mut self, index: usize) -> Option<&mut dyn ::narukom::AnyMessage> {
-                        match index { 1 => Some(self.place.get_or_insert_default().as_message_mut()),2 => Some(self.seen.get_or_insert_default().as_message_mut()),4 => Some(self.log.get_or_insert_default().as_message_mut()), _ => None }
+                        match index { 1 => Some(self.position.get_or_insert_default().as_message_mut()),2 => Some(self.seen.get_or_insert_default().as_message_mut()),4 => Some(self.log.get_or_insert_default().as_message_mut()), _ => None }
                     }
                 }
             };
@@ -232,15 +232,15 @@ impl ::narukom::Enumeration for report::Role {
         }
 const _: () = {
                 static MESSAGE: ::narukom::MessageDescriptor = ::narukom::MessageDescriptor {
-                    full_name: "team.Report.Place",
-                    name: "Report.Place",
+                    full_name: "team.Report.Position",
+                    name: "Report.Position",
                     fields: &[::narukom::FieldDescriptor { name: "x", tag: 1, kind: ::narukom::FieldKind::F64 },],
                     file_descriptor_set: FILE_DESCRIPTOR_SET,
                 };
-                impl ::narukom::Message for report::Place {
+                impl ::narukom::Message for report::Position {
                     const DESCRIPTOR: &'static ::narukom::MessageDescriptor = &MESSAGE;
                 }
-                impl ::narukom::Reflect for report::Place {
+                impl ::narukom::Reflect for report::Position {
                     fn descriptor(&self) -> &'static ::narukom::MessageDescriptor { &MESSAGE }
                     fn field(&self, index: usize) -> ::narukom::FieldValue<'_> {
                         match index { 0 => { let value = self.x; ::narukom::FieldValue::Float(value.into()) }, _ => ::narukom::FieldValue::Missing }
