@@ -101,7 +101,9 @@ impl TapeRun {
     ) -> Result<TransitionExplanation, String> {
         let (chart, transition) = self.transition(question.host, question.agent, question.transition)?;
         let time = (question.seconds * 1e9).max(0.0) as u64;
-        self.explain_transition_until(chart, transition, self.count_until(time), time)
+        let count = self.count_until(time);
+        self.check_unreplaced(chart, count)?;
+        self.explain_transition_until(chart, transition, count, time)
             .ok_or_else(|| format!("there is no transition {}", transition.0))
     }
 

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use monas::records::Chart;
+use monas::records::{Chart, Model};
 use prost::Message;
 use serde::Serialize;
 use yase::statechart::StateNames;
@@ -10,7 +10,7 @@ use yase::{NodeId, ScopeId, Statechart, TransitionId};
 
 use crate::chart_view::{ChartKey, seconds};
 use crate::read_value::{ReadMoment, ReadValue};
-use crate::run_view::CHART;
+use crate::run_view::{CHART, MODEL};
 use crate::tape_run::{TapeChart, TapeRun};
 use crate::transition_explanation::is_connector;
 
@@ -77,7 +77,8 @@ impl TapeRun {
     /// Answers a question.
     ///
     /// # Errors
-    /// The reason, in lower case: there is no such host, agent or state, or there are several.
+    /// The reason, in lower case: there is no such host, agent or state, or there are several; the
+    /// chart was replaced before the moment.
     pub fn explain(&self, question: &WhyQuestion<'_>) -> Result<Explanation, String> {
         let find = |chart: &TapeChart| {
             let found = StateNames::of(&chart.statechart).find(question.state);
@@ -85,7 +86,32 @@ impl TapeRun {
         };
         let (chart, node) = self.one_chart(question.host, question.agent, find)?;
         let time = (question.seconds * 1e9).max(0.0) as u64;
-        Ok(self.explain_until(chart, node, self.count_until(time)))
+        let count = self.count_until(time);
+        self.check_unreplaced(chart, count)?;
+        Ok(self.explain_until(chart, node, count))
+    }
+
+    /// Checks that a chart was not replaced among the first `count` messages: the numbers in its
+    /// later records are those of another chart.
+    ///
+    /// # Errors
+    /// When it was replaced.
+    pub(crate) fn check_unreplaced(&self, chart: &TapeChart, count: usize) -> Result<(), String> {
+        let mut first = None;
+        for (entry, channel) in (0..count).filter_map(|index| self.entry(index)) {
+            let is_own =
+                channel.topic == MODEL && channel.host == chart.host && channel.publisher == chart.agent;
+            let model = is_own.then(|| Model::decode(self.bytes(entry)).ok()).flatten();
+            let Some(model) = model.filter(|model| model.chart == chart.chart) else { continue };
+            if first.get_or_insert_with(|| model.clone()) != &model {
+                let time = seconds(entry.time);
+                let agent = &chart.agent;
+                return Err(format!(
+                    "the chart of `{agent}` was replaced at {time:.3} s: moments before are explained"
+                ));
+            }
+        }
+        Ok(())
     }
 
     /// The only chart of a host, or of one of its agents, that has what is looked for.

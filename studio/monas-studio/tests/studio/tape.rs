@@ -4,7 +4,9 @@ use std::path::Path;
 use std::sync::Arc;
 
 use monas::records::{self, foxglove::Log};
-use monas_studio::{SceneEvent, Studio, StudioSettings, TapeChart, TapeRun, TransitionQuestion, Verdict};
+use monas_studio::{
+    SceneEvent, Studio, StudioSettings, TapeChart, TapeRun, TransitionQuestion, Verdict, WhyQuestion,
+};
 use monas_tape::{Recording, Tape};
 use narukom::{Hub, Timestamp};
 use serde_json::{Value, json};
@@ -54,6 +56,34 @@ fn open(steps: u32) -> (Studio, Viewer, Value) {
     viewer.send(json!({"type": "pace", "factor": 0}));
     let tape = viewer.wait(|message| Some(message["tape"].clone()).filter(|tape| tape["factor"] == 0.0));
     (studio, viewer, tape)
+}
+
+#[test]
+fn moments_after_a_chart_was_replaced_are_not_explained() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("swapped.mcap");
+    let tape = Tape::create(&path).unwrap();
+    let hub = Hub::with_linked_topics("robot").unwrap();
+    hub.observe(Box::new(tape.clone()));
+    let mut models = hub.publisher(records::MODEL, "Lamp").unwrap();
+    let mut charts = hub.publisher(records::CHART, "Lamp").unwrap();
+    for (number, name) in [(1, "lamp"), (2, "lamp"), (3, "other")] {
+        let time = Timestamp::from_nanos(number * 1_000_000_000);
+        models.publish(records::Model { name: name.into(), ..records::Model::default() }, time);
+        charts.publish(records::Chart { entries: vec![2], ..records::Chart::default() }, time);
+    }
+    tape.finish().unwrap();
+    let (host, agent, model) = ("robot".into(), "Lamp".into(), "lamp".into());
+    let charts = [TapeChart { host, agent, chart: 0, model, statechart: lamp() }];
+    let tape = TapeRun::new("swapped", Recording::open(&path).unwrap(), &charts, None).unwrap();
+    let state = lamp().node(yase::NodeId(2)).name.clone();
+    let explain = |seconds| tape.explain(&WhyQuestion { host: "robot", agent: None, state: &state, seconds });
+    assert!(explain(2.5).unwrap().is_active);
+    let refused = explain(3.5).map(|why| why.state);
+    assert_eq!(
+        refused,
+        Err("the chart of `Lamp` was replaced at 3.000 s: moments before are explained".into())
+    );
 }
 
 #[test]
