@@ -8,7 +8,7 @@ mod recorded_run;
 pub(crate) use configuration::{
     ConfigurationKind, DEFAULT_CONFIGURATION, checked, checked_with, grammar, kind_of, load_agents,
 };
-pub(crate) use layers::LayerArguments;
+pub(crate) use layers::{LayerArguments, robot_file};
 pub(crate) use model::{valid_chart, valid_model};
 #[cfg(feature = "soccer")]
 pub(crate) use recorded_run::recorded_configuration;

@@ -38,6 +38,11 @@ impl ConfigurationBundle {
     /// The configuration at `path` with the files it names. Missing files are left out: loading the
     /// configuration reports them.
     pub fn of(path: impl AsRef<Path>) -> ConfigurationBundle {
+        ConfigurationBundle::including(path, &[])
+    }
+
+    /// The same with other files and the files that these name, such as the overrides of a robot.
+    pub fn including(path: impl AsRef<Path>, others: &[PathBuf]) -> ConfigurationBundle {
         let path = path.as_ref();
         let absolute = |path: &Path| normal(&std::path::absolute(path).unwrap_or_else(|_| path.to_owned()));
         let mut found = BTreeMap::new();
@@ -51,6 +56,7 @@ impl ConfigurationBundle {
             _ => absolute(path),
         };
         collect(&root, &mut found);
+        others.iter().for_each(|other| collect(&absolute(other), &mut found));
         let folder = common_folder(found.keys().chain([&root]));
         let name = |path: &Path| slashes(path.strip_prefix(&folder).unwrap_or(path));
         let is_bound = found.iter().any(|(path, content)| {

@@ -25,4 +25,6 @@
 
 mod tape_metadata;
 
-pub use tape_metadata::{END, FOLDER, RUN, SETTINGS, ended, label_real_time, label_simulated};
+pub use tape_metadata::{
+    END, FOLDER, ROBOT, RUN, SETTINGS, ended, label_real_time, label_robot, label_simulated,
+};

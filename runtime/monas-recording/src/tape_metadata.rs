@@ -17,6 +17,10 @@ pub const SETTINGS: &str = "settings";
 /// [`ConfigurationBundle::folder`].
 pub const FOLDER: &str = "folder";
 
+/// The name of the metadata about the overrides of a run's robot: `name`, that of the robot;
+/// present if there are any.
+pub const ROBOT: &str = "robot";
+
 /// The name of the metadata about the end of a run: `nanoseconds`, the end time. Later messages
 /// were published while agents were being stopped.
 pub const END: &str = "end";
@@ -78,6 +82,14 @@ fn label(
         // The tape reports what it cannot write, and the run goes on.
         _ => Ok(()),
     }
+}
+
+/// Writes the robot whose overrides the configuration of a run has.
+///
+/// # Errors
+/// The tape cannot be written.
+pub fn label_robot(tape: &Tape, name: &str) -> Result<(), Error> {
+    tape.describe(ROBOT, &BTreeMap::from([("name".to_owned(), name.to_owned())]))
 }
 
 /// Writes the end time of a run.

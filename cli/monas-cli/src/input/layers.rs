@@ -45,7 +45,7 @@ fn robot(config: &Path, name: &str) -> Result<Vec<config::Element>, Vec<Diagnost
     if diagnostics.iter().any(Diagnostic::is_error) { Err(diagnostics) } else { Ok(elements) }
 }
 
-fn robot_file(config: &Path, name: &str) -> Result<PathBuf, Box<Diagnostic>> {
+pub(crate) fn robot_file(config: &Path, name: &str) -> Result<PathBuf, Box<Diagnostic>> {
     let mut near = None;
     for ending in ["xml", "toml"] {
         match config::locate(config, &format!("robots/{name}.{ending}")) {

@@ -24,6 +24,8 @@ pub(crate) struct RecordedRun {
     configuration: String,
     /// Settings of the command line, one per line.
     settings: String,
+    /// The robot whose overrides the configuration has.
+    robot: Option<String>,
     /// The folder of the configuration, if paths depend on it.
     folder: Option<String>,
     /// The hosts whose agents ran: those of other robots of a match may have had other processes.
@@ -75,11 +77,14 @@ fn description(overview: &TapeOverview) -> Result<RecordedRun, String> {
     };
     let settings = facts.get(monas_recording::SETTINGS).cloned().unwrap_or_default();
     let folder = facts.get(monas_recording::FOLDER).cloned();
+    let robot = overview.facts.iter().find(|facts| facts.name == monas_recording::ROBOT);
+    let robot = robot.and_then(|facts| facts.entries.get("name").cloned());
     let robots = fact("robots")?.split(' ').map(str::to_owned).collect();
     Ok(RecordedRun {
         version: fact("version")?,
         configuration: fact("configuration")?,
         settings,
+        robot,
         folder,
         robots,
         time,
@@ -159,7 +164,7 @@ pub(crate) fn chosen_hosts(
     format: Format,
 ) -> Result<Vec<HostConfig>, CommandFailure> {
     let hosts = match config {
-        Some(path) => run.present(load(path, "", format)?),
+        Some(path) => run.present(load(path, "", None, format)?),
         None => configured(recording, run, format)?,
     };
     choose(hosts, agents)
@@ -205,7 +210,7 @@ fn configured(
     let folder = tempfile::tempdir().map_err(|error| CommandFailure::failed(format, error))?;
     let files = files(recording, run).map_err(failed(format))?;
     let path = files.unpack(folder.path()).map_err(|error| CommandFailure::failed(format, error))?;
-    Ok(run.present(load(&path, &run.settings, format)?))
+    Ok(run.present(load(&path, &run.settings, run.robot.clone(), format)?))
 }
 
 /// The recorded configuration.
@@ -225,11 +230,16 @@ fn files(recording: &Recording, run: &RecordedRun) -> Result<ConfigurationBundle
 
 /// The agents of a configuration. Warnings are dropped: they were reported when the run was
 /// recorded.
-fn load(path: &Path, settings: &str, format: Format) -> Result<Vec<HostConfig>, CommandFailure> {
+fn load(
+    path: &Path,
+    settings: &str,
+    robot: Option<String>,
+    format: Format,
+) -> Result<Vec<HostConfig>, CommandFailure> {
     let registry = Registry::linked();
     let invalid = |diagnostics| CommandFailure::Invalid(format, diagnostics);
     let settings = settings.lines().map(str::to_owned).collect();
-    let layers = layers::of(path, &LayerArguments { settings, robot: None }).map_err(invalid)?;
+    let layers = layers::of(path, &LayerArguments { settings, robot }).map_err(invalid)?;
     match kind_of(path).map_err(|unread| invalid(vec![*unread]))? {
         #[cfg(feature = "soccer")]
         ConfigurationKind::Match => {

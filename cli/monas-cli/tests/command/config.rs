@@ -374,3 +374,20 @@ fn physics_that_contradict_themselves_are_found_in_their_file() {
     assert!(answer.err.contains("error[E0405]: a kick strikes after it has ended"), "{answer:?}");
     assert!(answer.err.contains("simulator.xml:2:2"), "{answer:?}");
 }
+
+#[test]
+fn a_tape_is_replayed_with_the_overrides_of_its_robot() {
+    let agent = |name: &str| {
+        format!("<agent frequency=\"20\"><name>{name}</name><activity>LedHandler</activity></agent>\n")
+    };
+    let own = agent("More");
+    let folder = folder(&[("config/agents.xml", &agent("Lights")), ("robots/one.xml", &own)]);
+    let (config, tape) = (at(folder.path(), "config/agents.xml"), at(folder.path(), "run.mcap"));
+    let run = ["run", &config, "--robot", "one", "--for", "300ms", "--no-control", "--record", &tape];
+    let recorded = monas(&run);
+    assert_eq!(recorded.code, Some(0), "{recorded:?}");
+    fs::remove_dir_all(folder.path().join("robots")).expect("the overrides are on the tape, too");
+    let verified = monas(&["tape", "verify", &tape]);
+    assert_eq!(verified.code, Some(0), "{verified:?}");
+    assert!(verified.out.contains("More"), "{verified:?}");
+}

@@ -7,6 +7,7 @@
 
 mod count;
 
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -14,6 +15,7 @@ use aseme_verify::RecordedCoverage;
 use clap::{Args, ValueHint};
 use monas::records::{CHART, Chart};
 use monas_tape::Recording;
+use monas_terminal::{CommandFailure, CommandOutput, Exit, Format, FormatArgument, failed, report};
 use narukom::prost::Message as _;
 use serde_json::{Value, json};
 use yase::{Element, NodeId, NodeKind, TransitionId};
@@ -21,7 +23,6 @@ use yase_export::{Highlights, Mark, to_svg_marked};
 
 use crate::input::recorded_hosts;
 use count::{ChartCounts, UncoveredElement};
-use monas_terminal::{CommandFailure, CommandOutput, Exit, Format, FormatArgument, failed};
 
 /// Arguments of `monas model coverage`.
 #[derive(Args, Debug)]
@@ -43,8 +44,14 @@ pub(crate) fn execute(
 ) -> Result<Exit, CommandFailure> {
     let format = arguments.format.value;
     let mut charts: Vec<ChartCounts> = Vec::new();
+    let mut unknown = BTreeSet::new();
     for tape in &arguments.tapes {
-        gather(tape, format, &mut charts)?;
+        unknown.extend(gather(tape, format, &mut charts)?);
+    }
+    for agent in unknown {
+        let message =
+            format!("{agent} was added during the run and is not counted: its model is not on the tape");
+        report::note(console, format, &message)?;
     }
     if charts.is_empty() {
         return Err(CommandFailure::Failed(format, "no statechart has run on these tapes".into()));
@@ -79,8 +86,13 @@ pub(crate) fn recorded(tapes: &[PathBuf]) -> Result<Vec<RecordedCoverage>, Comma
     Ok(recorded.collect())
 }
 
-/// Adds the coverage of a tape.
-fn gather(tape: &Path, format: Format, charts: &mut Vec<ChartCounts>) -> Result<(), CommandFailure> {
+/// Adds the coverage of a tape. Returns the agents whose models are not on it.
+fn gather(
+    tape: &Path,
+    format: Format,
+    charts: &mut Vec<ChartCounts>,
+) -> Result<BTreeSet<String>, CommandFailure> {
+    let mut unknown = BTreeSet::new();
     let recording = Recording::open(tape).map_err(failed(format))?;
     let hosts = recorded_hosts(&recording, format)?;
     // By host, agent and the number of the chart in the agent.
@@ -104,15 +116,18 @@ fn gather(tape: &Path, format: Format, charts: &mut Vec<ChartCounts>) -> Result<
         let is_it = |(host, agent, number, _): &&(&str, &str, u32, usize)| {
             *host == channel.host && *agent == channel.publisher && *number == record.chart
         };
-        let known = places.iter().find(is_it).map(|(.., place)| &mut charts[*place]);
-        if !known.is_some_and(|covered| covered.count(&record)) {
+        let Some((.., place)) = places.iter().find(is_it) else {
+            unknown.insert(format!("`{}` on {}", channel.publisher, channel.host));
+            continue;
+        };
+        if !charts[*place].count(&record) {
             let (host, agent) = (&channel.host, &channel.publisher);
             let message =
                 format!("{}: `{agent}` on {host} runs another chart than the tape's models", tape.display());
             return Err(CommandFailure::Failed(format, message));
         }
     }
-    Ok(())
+    Ok(unknown)
 }
 
 fn write_text(covered: &ChartCounts, console: &mut CommandOutput<'_>) -> Result<(), CommandFailure> {

@@ -5,7 +5,7 @@ use std::io::Write;
 use std::time::Duration;
 
 use monas::config::Layers;
-use monas::{ConfigurationBundle, RunHash, Simulation, Statistics, Talws};
+use monas::{RunHash, Simulation, Statistics, Talws};
 use monas_robot::Announcement;
 use monas_robot::topics::ANNOUNCEMENT;
 use monas_studio::Pace;
@@ -36,10 +36,14 @@ pub(super) fn execute(
     let (seed, hash) = (arguments.seed.unwrap_or_default(), RunHash::new());
     talws.observe(Box::new(hash.clone()));
     if let Some(tape) = &tape {
-        let files = ConfigurationBundle::of(&arguments.config);
+        let files = outputs::files(arguments);
         let settings = layers.settings().collect::<Vec<_>>().join("\n");
         monas_recording::label_simulated(tape, &files, &settings, seed, &[Talws::LOCAL.to_owned()])
             .map_err(|error| CommandFailure::failed(format, error))?;
+        if let Some(robot) = &arguments.layers.robot {
+            monas_recording::label_robot(tape, robot)
+                .map_err(|error| CommandFailure::failed(format, error))?;
+        }
         talws.observe(Box::new(tape.clone()));
     }
     let interrupt = Interrupt::for_console(console).map_err(|error| CommandFailure::failed(format, error))?;

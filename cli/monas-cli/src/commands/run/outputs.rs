@@ -7,13 +7,14 @@ use monas::logger::{LogSettings, Severity};
 use monas::records::LOG;
 use monas::records::foxglove::Log;
 use monas::records::foxglove::log::Level;
-use monas::{RunHandle, Timestamp};
+use monas::{ConfigurationBundle, RunHandle, Timestamp};
 use monas_tape::{ExistingFile, RecordingFolder, RecordingLimits, Tape, TapeFile};
 use monas_terminal::{CommandFailure, CommandOutput, Format, failed, report};
 use yase::Diagnostic;
 
 use super::{RunArguments, control};
 use crate::crash_report;
+use crate::input::robot_file;
 
 /// The name under which alarms are published.
 const PUBLISHER: &str = "recording";
@@ -40,6 +41,13 @@ pub(super) fn open(
     let tape = to_tape(file).map_err(failed(arguments.format.value))?;
     crash_report::flush_in_crash(&tape);
     Ok(Some(tape))
+}
+
+/// The files of a run: its configuration, and the overrides of its robot.
+pub(super) fn files(arguments: &RunArguments) -> ConfigurationBundle {
+    let config = &arguments.config;
+    let robot = arguments.layers.robot.as_ref().and_then(|name| robot_file(config, name).ok());
+    ConfigurationBundle::including(config, robot.as_slice())
 }
 
 /// The file of `--record`; in a folder a new one, named after the run.

@@ -4,7 +4,7 @@ use std::io::Write;
 use std::time::Duration;
 
 use monas::config::Layers;
-use monas::{AgentStatistics, ConfigurationBundle, Registry, Statistics, Talws};
+use monas::{AgentStatistics, Registry, Statistics, Talws};
 use monas_tape::Tape;
 use monas_terminal::{CommandFailure, CommandOutput, Exit, Format, Interrupt, WallClock, report, table};
 use serde_json::{Value, json};
@@ -44,10 +44,14 @@ pub(super) fn run(
     let socket = control::bind(arguments, console)?;
     let tape = outputs::open(arguments, Tape::to_file_real_time, console)?;
     if let Some(tape) = &tape {
-        let files = ConfigurationBundle::of(&arguments.config);
+        let files = outputs::files(arguments);
         let settings = layers.settings().collect::<Vec<_>>().join("\n");
         monas_recording::label_real_time(tape, &files, &settings, &[host.to_owned()])
             .map_err(|error| CommandFailure::failed(format, error))?;
+        if let Some(robot) = &arguments.layers.robot {
+            monas_recording::label_robot(tape, robot)
+                .map_err(|error| CommandFailure::failed(format, error))?;
+        }
         talws.observe(Box::new(tape.clone()));
     }
     let interrupt = Interrupt::for_console(console).map_err(|error| CommandFailure::failed(format, error))?;
