@@ -86,10 +86,10 @@ impl OperatedGame {
     /// The state of the game or its rule book does not permit it: the reason, with what does.
     pub fn decide(&mut self, command: OperatorCommand) -> Result<(), String> {
         match command {
-            OperatorCommand::Initial => self.enter(LeagueState::Initial, 0),
+            OperatorCommand::Initial => self.stop(LeagueState::Initial),
             OperatorCommand::Standby => {
                 self.permit(LeagueState::Standby.number(self.rules()))?;
-                self.enter(LeagueState::Standby, 0);
+                self.stop(LeagueState::Standby);
             }
             OperatorCommand::Ready { team } => {
                 let team = team.map(|team| self.team(team)).transpose()?;
@@ -105,10 +105,7 @@ impl OperatedGame {
                 self.require(&[LeagueState::Set], "PLAYING follows SET")?;
                 self.enter(LeagueState::Playing, RESTART.0);
             }
-            OperatorCommand::Finish => {
-                self.data.kicking_team = None;
-                self.enter(LeagueState::Finished, 0);
-            }
+            OperatorCommand::Finish => self.stop(LeagueState::Finished),
             OperatorCommand::Half => self.switch_half()?,
             OperatorCommand::Goal { team } => self.count_goal(team)?,
             OperatorCommand::SetPlay { team, kind } => self.restart(team, kind)?,
@@ -149,6 +146,12 @@ impl OperatedGame {
 
     fn enter(&mut self, state: LeagueState, secondary_seconds: i16) {
         (self.data.state, self.data.secondary_seconds) = (state, secondary_seconds);
+    }
+
+    /// Enters a state in which no team kicks.
+    fn stop(&mut self, state: LeagueState) {
+        (self.data.set_play, self.data.kicking_team) = (None, None);
+        self.enter(state, 0);
     }
 
     /// The index of a team by its number.
@@ -215,8 +218,7 @@ impl OperatedGame {
         }
         data.teams.swap(0, 1);
         (data.is_first_half, data.seconds_left) = (false, self.half);
-        (data.set_play, data.kicking_team) = (None, None);
-        self.enter(LeagueState::Initial, 0);
+        self.stop(LeagueState::Initial);
         Ok(())
     }
 }
@@ -292,6 +294,18 @@ mod tests {
         assert!(game.data.competition.is_stopped());
         let refused = decide(&mut self::game(RuleBook::StandardPlatform), "stop");
         assert!(refused.unwrap_err().starts_with("only the Humanoid Soccer League"));
+    }
+
+    #[test]
+    fn no_team_kicks_where_the_game_does_not_go_on() {
+        for line in ["finish", "initial", "standby"] {
+            let mut game = game(RuleBook::StandardPlatform);
+            for line in ["ready 5", "set", "play", "set-play 24 corner kick", line] {
+                decide(&mut game, line).unwrap();
+            }
+            let GameControlData { set_play, kicking_team, secondary_seconds, .. } = game.data;
+            assert_eq!((set_play, kicking_team, secondary_seconds), (None, None, 0), "{line}");
+        }
     }
 
     #[test]
