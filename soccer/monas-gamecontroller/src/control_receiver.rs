@@ -1,6 +1,7 @@
 //! The robots' end of the protocol.
 
 use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 use std::io;
 use std::net::{SocketAddr, UdpSocket};
 
@@ -11,8 +12,9 @@ use crate::{Endpoint, GameControlData, Peer, RETURN_PORT, ReturnData};
 pub struct ControlReceiver {
     control: UdpSocket,
     return_port: u16,
-    /// The sockets from which robots report, by team and player.
-    robots: BTreeMap<(u8, u8), UdpSocket>,
+    /// The sockets from which robots report, by team and player, and whether to this host: one at
+    /// a loopback address reaches no other computer.
+    robots: BTreeMap<(u8, u8, bool), UdpSocket>,
 }
 
 impl ControlReceiver {
@@ -55,12 +57,33 @@ impl ControlReceiver {
     /// The robot's address is not available, or the report cannot be sent.
     pub fn report(&mut self, report: &ReturnData, referee: Peer) -> io::Result<()> {
         let packet = report.encode().map_err(|error| io::Error::new(io::ErrorKind::InvalidInput, error))?;
-        let robot = (report.team, report.player);
-        if !self.robots.contains_key(&robot) {
-            let source = referee.source(self.robots.len());
-            self.robots.insert(robot, received::socket((source, 0).into())?);
-        }
         let to = SocketAddr::from((referee.0, self.return_port));
-        self.robots[&robot].send_to(&packet, to).map(drop)
+        self.socket((report.team, report.player), referee)?.send_to(&packet, to).map(drop)
+    }
+
+    /// The socket from which a robot reports to a GameController.
+    fn socket(&mut self, (team, player): (u8, u8), referee: Peer) -> io::Result<&UdpSocket> {
+        let before = self.robots.keys().filter(|(.., is_loopback)| *is_loopback).count();
+        match self.robots.entry((team, player, referee.0.is_loopback())) {
+            Entry::Occupied(socket) => Ok(socket.into_mut()),
+            Entry::Vacant(place) => Ok(place.insert(received::socket((referee.source(before), 0).into())?)),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_robot_reports_to_another_computer_after_this_one() {
+        let mut receiver = ControlReceiver::open(Endpoint::LOOPBACK).unwrap();
+        let [here, elsewhere] = [[127, 0, 0, 1], [192, 0, 2, 1]].map(|address| Peer(address.into()));
+        let mut source = |player, referee| {
+            receiver.socket((1, player), referee).unwrap().local_addr().unwrap().ip().to_string()
+        };
+        assert_eq!([source(1, here), source(1, elsewhere)], ["127.0.0.2", "0.0.0.0"]);
+        assert_eq!([source(2, elsewhere), source(2, here)], ["0.0.0.0", "127.0.0.3"]);
+        assert_eq!([source(1, here), source(1, elsewhere)], ["127.0.0.2", "0.0.0.0"]);
     }
 }
