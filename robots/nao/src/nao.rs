@@ -53,8 +53,9 @@ struct ControlState {
     is_connected: bool,
     /// A packet has arrived since the last call of `sense`.
     is_new: bool,
-    /// Cycles since the last call of `sense`.
-    unattended: u32,
+    /// Cycles since the last call of `sense`; none before the first, which may come long after the
+    /// body is opened: a run begins when all its links are connected.
+    unattended: Option<u32>,
     ends: bool,
     has_ended: bool,
 }
@@ -86,7 +87,7 @@ impl Nao {
             control,
             is_connected: false,
             is_new: false,
-            unattended: 0,
+            unattended: None,
             ends: false,
             has_ended: false,
         };
@@ -161,8 +162,8 @@ impl SharedControl {
             state.control.receive(&sensors);
             state.is_connected = true;
             state.is_new = true;
-            state.unattended = state.unattended.saturating_add(1);
-            if state.ends || state.unattended > LOST_AFTER {
+            state.unattended = state.unattended.map(|cycles| cycles.saturating_add(1));
+            if state.ends || state.unattended.is_some_and(|cycles| cycles > LOST_AFTER) {
                 state.control.rest();
             }
             state.control.actuators().encode(&mut bytes);
@@ -185,7 +186,7 @@ impl Robot for Nao {
 
     fn sense(&mut self, now: Timestamp, percepts: &mut Percepts) -> Result<(), Error> {
         let mut state = self.shared.lock();
-        state.unattended = 0;
+        state.unattended = Some(0);
         if std::mem::take(&mut state.is_new) {
             self.measured_at = now;
         }

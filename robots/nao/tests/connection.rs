@@ -110,6 +110,24 @@ fn without_calls_it_sits_down_and_relaxes() {
 }
 
 #[test]
+fn it_stands_until_the_run_begins_however_long_that_takes() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = path(&folder);
+    let (commands, commanded) = mpsc::channel();
+    let server = std::thread::spawn(move || serve(&at, u64::MAX, commands));
+    while !path(&folder).exists() {
+        std::thread::yield_now();
+    }
+    let mut nao = Nao::open(&path(&folder)).unwrap();
+    // A command for each cycle: twice as many as after which a run that has begun counts as lost.
+    assert_eq!(commanded.iter().take(200).count(), 200);
+    let percepts = sense_until(&mut nao, 1, |_| true);
+    assert_eq!(percepts.sensors.posture(), Posture::Standing);
+    drop(nao);
+    server.join().unwrap();
+}
+
+#[test]
 fn it_connects_again_when_the_server_comes_back() {
     let folder = tempfile::tempdir().unwrap();
     let at = path(&folder);
