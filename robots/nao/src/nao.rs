@@ -99,25 +99,25 @@ impl Nao {
             .map_err(|error| Error::new(ErrorKind::Configuration, error.to_string()))?;
         let waited = shared.changed.wait_timeout_while(shared.lock(), FIRST_PACKET, |state| !state.is_new);
         let (state, _) = waited.unwrap_or_else(PoisonError::into_inner);
-        let (answers, mut anatomy) = (state.is_new, state.control.anatomy().clone());
+        let (answers, anatomy) = (state.is_new, state.control.anatomy().clone());
         drop(state);
-        let channels = RobotChannels::connect(path)?;
-        anatomy.radio = if channels.is_some() { RADIO } else { 0 };
-        let nao = Nao {
+        // From here on an error ends the thread, by dropping this.
+        let mut nao = Nao {
             anatomy,
             shared,
-            channels,
+            channels: None,
             camera_places: CameraPlaces::default(),
             cameras: None,
             measured_at: Timestamp::ZERO,
             thread: Some(thread),
         };
-        match answers {
-            true => Ok(nao),
-            false => {
-                Err(Error::new(ErrorKind::Disconnected, format!("no LoLA answers at {}", path.display())))
-            }
+        if !answers {
+            let message = format!("no LoLA answers at {}", path.display());
+            return Err(Error::new(ErrorKind::Disconnected, message));
         }
+        nao.channels = RobotChannels::connect(path)?;
+        nao.anatomy.radio = if nao.channels.is_some() { RADIO } else { 0 };
+        Ok(nao)
     }
 
     /// The body with its cameras in other places than those of a Nao V6. They are opened by
@@ -250,5 +250,50 @@ impl Drop for Nao {
         if let Some(thread) = self.thread.take() {
             let _ = thread.join();
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::mpsc;
+
+    use super::*;
+    use crate::lola::ActuatorPacket;
+
+    /// Sends sensors until the client has gone. Returns its last actuators, none if it stays.
+    fn serve(mut lola: Socket) -> Option<ActuatorPacket> {
+        let (mut bytes, mut actuators) = (Vec::new(), ActuatorPacket::default());
+        let (_sender, pause) = mpsc::channel::<()>();
+        SensorPacket::default().encode(&mut bytes);
+        let mut was_connected = false;
+        for _ in 0..2000 {
+            // A connection that has ended is seen below.
+            let _ = lola.send(&bytes).and_then(|()| lola.receive(|bytes| actuators.decode(bytes)));
+            if was_connected && !lola.is_connected() {
+                return Some(actuators);
+            }
+            was_connected = lola.is_connected();
+            let _ = pause.recv_timeout(Duration::from_millis(1));
+        }
+        None
+    }
+
+    #[test]
+    fn a_robot_whose_channels_fail_is_left_relaxed_and_without_a_connection() {
+        let folder = tempfile::tempdir().unwrap();
+        // The path is short enough for a socket, and too long with the endings of the channels.
+        let length = 100_usize.saturating_sub(folder.path().as_os_str().len() + 1);
+        let path = folder.path().join("l".repeat(length));
+        for ending in ["simulated_camera", "simulated_referee", "simulated_radio"] {
+            std::fs::write(format!("{}.{ending}", path.display()), "").unwrap();
+        }
+        let lola = Socket::listen(&path).unwrap();
+        std::thread::scope(|threads| {
+            let server = threads.spawn(|| serve(lola));
+            let error = Nao::open(&path).map(drop).unwrap_err().to_string();
+            assert!(error.contains("simulated_camera"), "{error}");
+            let last = server.join().unwrap().expect("the connection stays");
+            assert_eq!(last.stiffness[10], 0.0);
+        });
     }
 }

@@ -82,16 +82,20 @@ impl SimulatedChannels {
 }
 
 impl RobotChannels {
-    /// Connects beside the socket of LoLA. On a robot there are no such sockets, and no channels.
+    /// Connects beside the socket of LoLA. On a robot there are no such sockets, or those of a
+    /// simulation that was killed, and no channels.
     pub(crate) fn connect(lola: &Path) -> Result<Option<RobotChannels>, Error> {
         if !are_offered(lola) {
             return Ok(None);
         }
-        let [camera, referee, radio] = ENDINGS.map(|ending| Socket::connect(&path(lola, ending)));
+        let [camera, referee, radio] = ENDINGS.map(|ending| Socket::connect_if_served(&path(lola, ending)));
+        let (Some(camera), Some(referee), Some(radio)) = (camera?, referee?, radio?) else {
+            return Ok(None);
+        };
         Ok(Some(RobotChannels {
-            camera: MessageSocket::new(camera?),
-            referee: MessageSocket::new(referee?),
-            radio: MessageSocket::new(radio?),
+            camera: MessageSocket::new(camera),
+            referee: MessageSocket::new(referee),
+            radio: MessageSocket::new(radio),
         }))
     }
 
@@ -146,5 +150,27 @@ mod tests {
         };
         assert_eq!(received(7000), [6940, 6900]);
         assert_eq!(received(1000), [940, 900], "the same clock");
+    }
+
+    #[test]
+    fn files_that_nobody_serves_are_no_channels() {
+        let folder = tempfile::tempdir().unwrap();
+        let lola = folder.path().join("lola");
+        for ending in ENDINGS {
+            drop(std::os::unix::net::UnixListener::bind(path(&lola, ending)).unwrap());
+        }
+        assert!(are_offered(&lola) && RobotChannels::connect(&lola).unwrap().is_none());
+    }
+
+    #[test]
+    fn the_files_of_channels_end_with_them_unless_others_have_replaced_them() {
+        let folder = tempfile::tempdir().unwrap();
+        let lola = folder.path().join("lola");
+        let first = SimulatedChannels::listen(&lola).unwrap();
+        let second = SimulatedChannels::listen(&lola).unwrap();
+        drop(first);
+        assert!(are_offered(&lola) && RobotChannels::connect(&lola).unwrap().is_some());
+        drop(second);
+        assert!(std::fs::read_dir(folder.path()).unwrap().next().is_none());
     }
 }

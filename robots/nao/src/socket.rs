@@ -2,8 +2,9 @@
 
 use std::io::{ErrorKind, Read, Write};
 use std::marker::PhantomData;
+use std::os::unix::fs::MetadataExt;
 use std::os::unix::net::{UnixListener, UnixStream};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use prost::Message;
@@ -20,13 +21,46 @@ const SILENCE: Duration = Duration::from_secs(1);
 
 /// One end of a connection, or a listener for one.
 pub(crate) struct Socket {
-    listener: Option<UnixListener>,
+    listener: Option<Listener>,
     stream: Option<UnixStream>,
     received: Vec<u8>,
     /// The rest of what was sent in part.
     unsent: Vec<u8>,
     /// Reading waits for bytes.
     waits: bool,
+}
+
+/// A listener, whose file ends with it.
+struct Listener {
+    listener: UnixListener,
+    path: PathBuf,
+    /// Device and number of the file: another listener may have replaced it.
+    file: Option<(u64, u64)>,
+}
+
+impl Listener {
+    /// Listens at a path. A file that is there is replaced.
+    fn bind(path: &Path) -> std::io::Result<Listener> {
+        if path.exists() {
+            std::fs::remove_file(path)?;
+        }
+        let listener = UnixListener::bind(path)?;
+        listener.set_nonblocking(true)?;
+        Ok(Listener { listener, path: path.to_owned(), file: file_at(path) })
+    }
+}
+
+impl Drop for Listener {
+    fn drop(&mut self) {
+        if self.file.is_some() && file_at(&self.path) == self.file {
+            // What cannot be removed is replaced by the next listener.
+            let _ = std::fs::remove_file(&self.path);
+        }
+    }
+}
+
+fn file_at(path: &Path) -> Option<(u64, u64)> {
+    std::fs::symlink_metadata(path).ok().map(|file| (file.dev(), file.ino()))
 }
 
 impl Socket {
@@ -44,10 +78,18 @@ impl Socket {
 
     /// Connects to a path.
     pub(crate) fn connect(path: &Path) -> Result<Socket, Error> {
-        let stream = UnixStream::connect(path).map_err(|error| {
-            Error::disconnected(format!("nothing answers at {}: {error}", path.display()))
-        })?;
-        Socket::connected(stream)
+        Socket::connected(UnixStream::connect(path).map_err(|error| unanswered(path, &error))?)
+    }
+
+    /// Connects to a path; none if nobody listens there. A process that was killed leaves its file.
+    pub(crate) fn connect_if_served(path: &Path) -> Result<Option<Socket>, Error> {
+        match UnixStream::connect(path) {
+            Ok(stream) => Socket::connected(stream).map(Some),
+            Err(error) if matches!(error.kind(), ErrorKind::ConnectionRefused | ErrorKind::NotFound) => {
+                Ok(None)
+            }
+            Err(error) => Err(unanswered(path, &error)),
+        }
     }
 
     /// Connects to a path; [`receive`](Socket::receive) then waits for bytes, up to a second.
@@ -62,12 +104,8 @@ impl Socket {
 
     /// Listens at a path for one connection at a time. A file that is there is replaced.
     pub(crate) fn listen(path: &Path) -> Result<Socket, Error> {
-        let cannot = |error| Error::disconnected(format!("cannot listen at {}: {error}", path.display()));
-        if path.exists() {
-            std::fs::remove_file(path).map_err(cannot)?;
-        }
-        let listener = UnixListener::bind(path).map_err(cannot)?;
-        listener.set_nonblocking(true).map_err(cannot)?;
+        let listener = Listener::bind(path)
+            .map_err(|error| Error::disconnected(format!("cannot listen at {}: {error}", path.display())))?;
         Ok(Socket {
             listener: Some(listener),
             stream: None,
@@ -141,7 +179,7 @@ impl Socket {
 
     fn accept(&mut self) {
         if self.stream.is_none()
-            && let Some(Ok((stream, _))) = self.listener.as_ref().map(UnixListener::accept)
+            && let Some(Ok((stream, _))) = self.listener.as_ref().map(|it| it.listener.accept())
             && stream.set_nonblocking(true).is_ok()
         {
             self.stream = Some(stream);
@@ -181,6 +219,10 @@ impl Socket {
         }
         filled.map(|()| is_new)
     }
+}
+
+fn unanswered(path: &Path, error: &std::io::Error) -> Error {
+    Error::disconnected(format!("nothing answers at {}: {error}", path.display()))
 }
 
 fn failed(error: std::io::Error) -> Error {
