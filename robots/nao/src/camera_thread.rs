@@ -11,8 +11,8 @@ use crate::frame::Frame;
 
 /// The longest wait for an image, after which a thread looks whether it should end.
 const WAIT: Duration = Duration::from_millis(200);
-/// The waits without an image after which a camera counts as gone: about two seconds.
-const LOST_AFTER: u32 = 10;
+/// The time without an image after which a camera counts as gone.
+const LOST_AFTER: Duration = Duration::from_secs(2);
 /// The pause between two attempts to open a camera.
 const RETRY: Duration = Duration::from_secs(1);
 
@@ -57,7 +57,7 @@ impl SharedFrame {
         while !self.lock().ends {
             let taken = open().and_then(|mut source| {
                 reported.clear();
-                self.take_frames(&mut source)
+                self.take_frames(&mut source, monotonic_time)
             });
             let Err(error) = taken else { return };
             let message = error.to_string();
@@ -70,12 +70,15 @@ impl SharedFrame {
         }
     }
 
-    fn take_frames(&self, source: &mut impl FrameSource) -> Result<()> {
-        let mut waits = 0;
+    fn take_frames(&self, source: &mut impl FrameSource, time: impl Fn() -> Duration) -> Result<()> {
+        let mut last = time();
         loop {
             let frame = source.next_frame(WAIT)?;
-            waits = if frame.is_some() { 0 } else { waits + 1 };
-            if waits > LOST_AFTER {
+            let now = time();
+            // A damaged image takes less time than a wait.
+            if frame.is_some() {
+                last = now;
+            } else if now.saturating_sub(last) > LOST_AFTER {
                 return Err(std::io::Error::other("no image has come for two seconds"));
             }
             let mut state = self.lock();
@@ -160,7 +163,14 @@ mod tests {
         let (sender, receiver) = channel();
         script(&sender);
         drop(sender);
-        shared.take_frames(&mut Scripted(receiver)).unwrap_err().to_string()
+        run_at(shared, 0, receiver)
+    }
+
+    /// As `run`; between two looks at the clock pass so many milliseconds.
+    fn run_at(shared: &SharedFrame, millis: u64, receiver: Receiver<Option<Frame>>) -> String {
+        let time = AtomicU64::new(0);
+        let clock = || Duration::from_millis(time.fetch_add(millis, Ordering::Relaxed));
+        shared.take_frames(&mut Scripted(receiver), clock).unwrap_err().to_string()
     }
 
     #[test]
@@ -174,10 +184,21 @@ mod tests {
     }
 
     #[test]
-    fn a_camera_without_images_counts_as_gone() {
-        let silent = |waits| move |camera: &Sender<_>| (0..waits).for_each(|_| camera.send(None).unwrap());
-        assert_eq!(run(&state(), silent(LOST_AFTER)), "gone");
-        assert_eq!(run(&state(), silent(LOST_AFTER + 1)), "no image has come for two seconds");
+    fn a_camera_counts_as_gone_after_two_seconds_without_images() {
+        let ends = |millis, images: &[Option<Frame>]| {
+            let (sender, receiver) = channel();
+            images.iter().for_each(|image| sender.send(image.clone()).unwrap());
+            drop(sender);
+            run_at(&state(), millis, receiver)
+        };
+        let (gone, silent) = ("gone", "no image has come for two seconds");
+        assert_eq!(ends(200, &vec![None; 10]), gone);
+        assert_eq!(ends(200, &vec![None; 11]), silent);
+        let one_in_ten: Vec<_> = (0..40).map(|at| (at % 10 == 9).then(|| frame(at))).collect();
+        assert_eq!(ends(200, &one_in_ten), gone);
+        // Damaged images, 30 a second.
+        assert_eq!(ends(33, &vec![None; 60]), gone);
+        assert_eq!(ends(33, &vec![None; 61]), silent);
     }
 
     #[test]
