@@ -7,7 +7,7 @@ use monas::{BodyStatistics, Percentiles};
 /// The scoreboard.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub struct Scoreboard {
-    /// The teams, in the order of the match file.
+    /// The teams, in the order of their numbers.
     pub teams: [TeamScore; 2],
     /// 1 or 2.
     pub half: u8,
@@ -33,7 +33,7 @@ pub struct TeamScore {
 pub struct MatchEvent {
     /// Time since the start.
     pub time: Duration,
-    /// Description: `goal for Blue by 2, 1 : 0`.
+    /// Description: `goal for Blue by Blue 2`.
     pub text: String,
 }
 
@@ -47,7 +47,7 @@ pub struct MatchSummary {
     pub messages: u64,
     /// How long the field was simulated.
     pub simulated: Duration,
-    /// The teams, in the order of the match file.
+    /// The teams, in the order of their numbers.
     pub teams: Vec<TeamSummary>,
     /// The agents, in the order in which they run.
     pub agents: Vec<AgentSummary>,
