@@ -37,12 +37,15 @@ kind_of() {
 start_systemd() {
     units="${XDG_CONFIG_HOME:-$HOME/.config}/systemd/user"
     mkdir -p "$units"
+    # As a quoted word of systemd: `\` and `"` are escaped by `\`, `%` begins a specifier. Systemd
+    # starts no program whose name has a quote or a backslash, but says so.
+    start=$(printf '%s\n' "$folder/current/start" | sed 's/[\"]/\\&/g; s/%/%%/g')
     cat >"$units/$unit.service" <<UNIT
 [Unit]
 Description=Monas, $unit
 
 [Service]
-ExecStart=$folder/current/start
+ExecStart="$start"
 Restart=on-failure
 RestartSec=1
 

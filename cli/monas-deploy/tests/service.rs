@@ -129,3 +129,32 @@ fn the_output_of_runs_before_stays() {
     }
     assert!(!robot.file("service.log.6").exists());
 }
+
+#[test]
+fn a_unit_of_systemd_names_a_folder_with_blanks_and_specifiers() {
+    let site = tempfile::tempdir().unwrap();
+    let folder = site.path().join("mo nas %h 50% $HOME");
+    fs::create_dir_all(folder.join("releases/one")).unwrap();
+    let tools = site.path().join("tools");
+    fs::create_dir(&tools).unwrap();
+    // The services of this computer are not touched.
+    for program in [tools.join("systemctl"), folder.join("releases/one/start")] {
+        fs::write(&program, "#!/bin/sh\n").unwrap();
+        fs::set_permissions(&program, fs::Permissions::from_mode(0o755)).unwrap();
+    }
+    let mut task = Command::new("sh");
+    task.args(["-c", TASKS, "monas-deploy", "run"]).arg(&folder).args(["one", "unit", "systemd", "1"]);
+    let path = format!("{}:{}", tools.display(), std::env::var("PATH").unwrap());
+    let deployed = task.env("PATH", path).env("XDG_CONFIG_HOME", site.path()).output().unwrap();
+    assert!(deployed.status.success(), "{deployed:?}");
+    let unit = site.path().join("systemd/user/unit.service");
+    let text = fs::read_to_string(&unit).unwrap();
+    assert!(text.contains("/mo nas %%h 50%% $HOME/current/start\"\n"), "{text}");
+    // Not every computer has systemd.
+    let mut verify = Command::new("systemd-analyze");
+    verify.args(["--user", "verify"]).arg(&unit).env("XDG_RUNTIME_DIR", site.path());
+    if let Ok(verified) = verify.output() {
+        let said = String::from_utf8_lossy(&verified.stderr).into_owned();
+        assert_eq!((verified.status.code(), said.as_str()), (Some(0), ""), "{text}");
+    }
+}

@@ -273,7 +273,7 @@ fn a_robot_with_systemd_gets_a_unit_that_starts_the_current_release() {
     let file = site.at("units/systemd/user").join(unit);
     let text = fs::read_to_string(&file).expect("a unit");
     let start = site.there("current/start");
-    assert!(text.contains(&format!("ExecStart={}\n", start.display())), "{text}");
+    assert!(text.contains(&format!("ExecStart=\"{}\"\n", start.display())), "{text}");
     assert!(start.is_file());
     if let Some(analyze) = installed(&["/usr/bin/systemd-analyze"]) {
         let mut verify = Command::new(analyze);
