@@ -2,6 +2,7 @@
 
 use std::ffi::OsString;
 use std::fs::File;
+use std::io::ErrorKind;
 use std::net::TcpListener;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
@@ -20,6 +21,9 @@ const INSTALL: &str =
 const STARTING: Duration = Duration::from_secs(90);
 /// The pause between two attempts to connect.
 const RETRY: Duration = Duration::from_millis(5);
+
+/// The most names that are tried for a folder.
+const MOST_FOLDERS: u32 = 1000;
 
 /// What the server's Python runs first, from the server's folder: version 0.2.1 ends with an error
 /// when a shape without a name touches the ball, as the K1 has.
@@ -53,8 +57,8 @@ impl Server {
         let [agents, monitors] = free_ports()?;
         let failed =
             |what: std::io::Error| Error::configuration(format!("the server cannot be started: {what}"));
-        let folder = std::env::temp_dir().join(format!("monas-rcsssmj-{}-{agents}", std::process::id()));
-        std::fs::create_dir_all(&folder).map_err(failed)?;
+        let name = format!("monas-rcsssmj-{}-{agents}", std::process::id());
+        let folder = private_folder(&std::env::temp_dir(), &name).map_err(failed)?;
         std::fs::write(folder.join("sitecustomize.py"), REPAIR).map_err(failed)?;
         let log = File::create(folder.join("output.log")).map_err(failed)?;
         let mut command = Command::new(program);
@@ -72,7 +76,7 @@ impl Server {
         let mut process = command.spawn().map_err(|error| {
             let _ = std::fs::remove_dir_all(&folder);
             match error.kind() {
-                std::io::ErrorKind::NotFound => {
+                ErrorKind::NotFound => {
                     Error::configuration(format!("there is no program `{program}`: {INSTALL}"))
                 }
                 _ => Error::configuration(format!("`{program}` cannot be started: {error}")),
@@ -146,6 +150,26 @@ impl Drop for Server {
     }
 }
 
+/// Creates a folder that only this user can access. Where one of that name exists, it gets a number:
+/// Python executes what is in it, and in the folder for temporary files others may have prepared it.
+fn private_folder(parent: &Path, name: &str) -> std::io::Result<PathBuf> {
+    #[cfg_attr(not(unix), expect(unused_mut, reason = "there are no modes"))]
+    let mut builder = std::fs::DirBuilder::new();
+    #[cfg(unix)]
+    std::os::unix::fs::DirBuilderExt::mode(&mut builder, 0o700);
+    let mut folder = parent.join(name);
+    let mut number = 1;
+    loop {
+        match builder.create(&folder) {
+            Err(error) if error.kind() == ErrorKind::AlreadyExists && number < MOST_FOLDERS => {
+                number += 1;
+                folder = parent.join(format!("{name}-{number}"));
+            }
+            created => return created.map(|()| folder),
+        }
+    }
+}
+
 /// Starts the watcher of a server. Its input is a pipe from this process, which the system closes
 /// with it.
 fn watch(server: &Child, folder: &Path) -> std::io::Result<Option<Child>> {
@@ -198,6 +222,20 @@ mod tests {
         let error = server.monitor().unwrap_err().to_string();
         assert!(error.starts_with("the server has ended, exit status: 1"), "{error}");
     }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_folder_that_another_user_has_prepared_is_not_taken() {
+        use std::os::unix::fs::PermissionsExt;
+
+        let parent = tempfile::tempdir().unwrap();
+        std::fs::create_dir(parent.path().join("server")).unwrap();
+        std::os::unix::fs::symlink(parent.path().join("elsewhere"), parent.path().join("server-2")).unwrap();
+        let folder = private_folder(parent.path(), "server").unwrap();
+        assert_eq!(folder, parent.path().join("server-3"));
+        assert_eq!(folder.metadata().unwrap().permissions().mode() & 0o777, 0o700);
+    }
+
     #[cfg(unix)]
     #[test]
     fn a_server_ends_when_the_process_of_its_run_is_gone() {
