@@ -29,7 +29,7 @@ const LEAST_WEIGHT: f64 = 0.5;
 
 /// What the joints do.
 #[derive(Debug)]
-enum Activity {
+enum BodyState {
     /// They do nothing until the first sensors arrive.
     Waiting,
     /// They become stiff on the way to the stand; the part of the time that is over.
@@ -47,7 +47,7 @@ pub(crate) struct NaoControl {
     anatomy: Anatomy,
     walk: Box<dyn WalkEngine>,
     actions: SpecialActions,
-    activity: Activity,
+    state: BodyState,
     commands: Actuators,
     skill_number: u64,
     skill_done: u64,
@@ -75,7 +75,7 @@ impl NaoControl {
             anatomy: anatomy_of(options)?,
             actions: SpecialActions::of(options)?,
             walk: Box::new(SteppingWalk::default()),
-            activity: Activity::Waiting,
+            state: BodyState::Waiting,
             commands: Actuators::default(),
             skill_number: 0,
             skill_done: 0,
@@ -113,16 +113,15 @@ impl NaoControl {
     pub(crate) fn receive(&mut self, packet: &SensorPacket) {
         self.sensors.clone_from(packet);
         let measured = packet.position.map(f64::from);
-        if matches!(self.activity, Activity::Waiting) {
+        if matches!(self.state, BodyState::Waiting) {
             (self.measured, self.angles) = (measured, measured);
-            self.activity =
-                Activity::Stiffening { motion: Motion::stand(measured, STIFFENING), elapsed: 0.0 };
+            self.state = BodyState::Stiffening { motion: Motion::stand(measured, STIFFENING), elapsed: 0.0 };
         }
         self.measured_before = std::mem::replace(&mut self.measured, measured);
         let [roll, pitch] = packet.angles.map(f64::from);
         self.falls.measure(roll, pitch);
         // Only steps carry the robot: the legs of a skill move without it.
-        let walks = matches!(self.activity, Activity::Active { skill: None });
+        let walks = matches!(self.state, BodyState::Active { skill: None });
         if walks && self.has_weight() && !self.falls.is_inclined() {
             let [x, y, turn] = displacement(&self.measured_before, &self.measured);
             let [before_x, before_y, heading] = self.odometry;
@@ -135,7 +134,7 @@ impl NaoControl {
     pub(crate) fn actuators(&mut self) -> &ActuatorPacket {
         let (stiffness, is_echo) = self.advance();
         for joint in 0..JOINTS {
-            let command = self.targets.of(joint).filter(|_| matches!(self.activity, Activity::Active { .. }));
+            let command = self.targets.of(joint).filter(|_| matches!(self.state, BodyState::Active { .. }));
             let (target, stiffness) = command.unwrap_or_else(|| {
                 let limits = self.anatomy.joints[joint].limits;
                 (limits.clamp(self.angles[joint]), stiffness)
@@ -153,17 +152,17 @@ impl NaoControl {
     fn advance(&mut self) -> (f64, bool) {
         let falls = self.falls;
         let seconds = CYCLE_SECONDS;
-        match &mut self.activity {
-            Activity::Waiting => (0.0, true),
-            Activity::Stiffening { motion, elapsed } => {
+        match &mut self.state {
+            BodyState::Waiting => (0.0, true),
+            BodyState::Stiffening { motion, elapsed } => {
                 *elapsed += seconds;
                 let part = (*elapsed / STIFFENING).min(1.0);
                 if motion.advance(seconds, falls, &mut self.angles) {
-                    self.activity = Activity::Active { skill: None };
+                    self.state = BodyState::Active { skill: None };
                 }
                 (part * STIFFNESS, false)
             }
-            Activity::Active { skill: None } => {
+            BodyState::Active { skill: None } => {
                 self.move_head();
                 let Actuators { walk_x, walk_y, walk_turn, .. } = self.commands;
                 let mut velocity = WalkVelocity {
@@ -178,14 +177,14 @@ impl NaoControl {
                 self.walk.advance(velocity, seconds, &mut self.angles);
                 (STIFFNESS, false)
             }
-            Activity::Active { skill: Some(_) } => (self.perform().unwrap_or(STIFFNESS), false),
-            Activity::SittingDown { motion } => {
+            BodyState::Active { skill: Some(_) } => (self.perform().unwrap_or(STIFFNESS), false),
+            BodyState::SittingDown { motion } => {
                 if motion.advance(seconds, falls, &mut self.angles) || falls.is_inclined() {
-                    self.activity = Activity::Relaxing { elapsed: 0.0 };
+                    self.state = BodyState::Relaxing { elapsed: 0.0 };
                 }
                 (STIFFNESS, false)
             }
-            Activity::Relaxing { elapsed } => {
+            BodyState::Relaxing { elapsed } => {
                 *elapsed += seconds;
                 let part = 1.0 - *elapsed / RELAXING;
                 (part.max(0.0) * STIFFNESS, part <= 0.0)
@@ -197,7 +196,7 @@ impl NaoControl {
     fn perform(&mut self) -> Option<f64> {
         // A skill may move the head too.
         self.move_head();
-        let Activity::Active { skill: Some((_, motion)) } = &mut self.activity else { return None };
+        let BodyState::Active { skill: Some((_, motion)) } = &mut self.state else { return None };
         let is_over = motion.advance(CYCLE_SECONDS, self.falls, &mut self.angles);
         let stiffness = motion.stiffness();
         if is_over {
@@ -230,9 +229,9 @@ impl NaoControl {
             return;
         }
         self.skill_number = number;
-        match (&mut self.activity, self.actions.motion(wanted, self.angles)) {
-            (Activity::Active { skill: skill @ None }, Some(motion)) => *skill = Some((wanted, motion)),
-            (Activity::Active { skill: Some(_) }, _) => {}
+        match (&mut self.state, self.actions.motion(wanted, self.angles)) {
+            (BodyState::Active { skill: skill @ None }, Some(motion)) => *skill = Some((wanted, motion)),
+            (BodyState::Active { skill: Some(_) }, _) => {}
             _ => (self.skill_done, self.skill_result) = (number, SkillResult::Refused),
         }
     }
@@ -240,7 +239,7 @@ impl NaoControl {
     fn end_skill(&mut self, result: SkillResult) {
         (self.skill_done, self.skill_result) = (self.skill_number, result);
         self.walk.stop();
-        self.activity = Activity::Active { skill: None };
+        self.state = BodyState::Active { skill: None };
     }
 
     pub(crate) fn command_joints(&mut self, commands: &JointCommands) -> Result<(), Error> {
@@ -258,19 +257,19 @@ impl NaoControl {
         }
         self.commands = Actuators::default();
         self.walk.stop();
-        self.activity = match self.activity {
-            Activity::Waiting | Activity::Stiffening { .. } => Activity::Relaxing { elapsed: 0.0 },
-            _ => Activity::SittingDown { motion: self.actions.sit_down(self.angles) },
+        self.state = match self.state {
+            BodyState::Waiting | BodyState::Stiffening { .. } => BodyState::Relaxing { elapsed: 0.0 },
+            _ => BodyState::SittingDown { motion: self.actions.sit_down(self.angles) },
         };
     }
 
     fn rests(&self) -> bool {
-        matches!(self.activity, Activity::SittingDown { .. } | Activity::Relaxing { .. })
+        matches!(self.state, BodyState::SittingDown { .. } | BodyState::Relaxing { .. })
     }
 
     /// Whether the robot rests and its joints have lost their stiffness.
     pub(crate) fn is_relaxed(&self) -> bool {
-        matches!(self.activity, Activity::Relaxing { elapsed } if elapsed >= RELAXING)
+        matches!(self.state, BodyState::Relaxing { elapsed } if elapsed >= RELAXING)
     }
 
     fn has_weight(&self) -> bool {
@@ -278,17 +277,17 @@ impl NaoControl {
     }
 
     fn posture(&self) -> Posture {
-        match &self.activity {
-            Activity::Waiting => Posture::Unknown,
-            Activity::Active { skill: Some((Skill::StandUp, _)) } => Posture::StandingUp,
-            Activity::Active { skill: Some(_) } => Posture::Busy,
+        match &self.state {
+            BodyState::Waiting => Posture::Unknown,
+            BodyState::Active { skill: Some((Skill::StandUp, _)) } => Posture::StandingUp,
+            BodyState::Active { skill: Some(_) } => Posture::Busy,
             _ if self.falls.is_fallen() => Posture::Fallen,
-            Activity::SittingDown { .. } | Activity::Relaxing { .. } => Posture::Sitting,
+            BodyState::SittingDown { .. } | BodyState::Relaxing { .. } => Posture::Sitting,
             _ if self.falls.is_inclined() => Posture::Busy,
             _ if !self.has_weight() => Posture::Lifted,
-            Activity::Stiffening { .. } => Posture::Busy,
-            Activity::Active { skill: None } if self.walk.is_moving() => Posture::Walking,
-            Activity::Active { skill: None } => Posture::Standing,
+            BodyState::Stiffening { .. } => Posture::Busy,
+            BodyState::Active { skill: None } if self.walk.is_moving() => Posture::Walking,
+            BodyState::Active { skill: None } => Posture::Standing,
         }
     }
 

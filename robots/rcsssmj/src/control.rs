@@ -18,7 +18,7 @@ use crate::walk::{Gait, Motion, Motors, Ramp, WalkEngine, WalkVelocity};
 
 /// What the robot does.
 #[derive(Clone, Copy, PartialEq, Debug)]
-enum Activity {
+enum BodyState {
     /// It follows the walk that is commanded.
     Walking,
     /// It kicks.
@@ -38,7 +38,7 @@ pub(crate) struct BoosterControl {
     ramp: Ramp,
     kick_parameters: KickParameters,
     kick: Option<Kick>,
-    activity: Activity,
+    state: BodyState,
     commands: Actuators,
     skill_number: u64,
     skill_done: u64,
@@ -70,7 +70,7 @@ impl BoosterControl {
             ramp: Ramp::default(),
             kick_parameters,
             kick: None,
-            activity: Activity::Walking,
+            state: BodyState::Walking,
             commands: Actuators::default(),
             skill_number: 0,
             skill_done: 0,
@@ -122,10 +122,10 @@ impl BoosterControl {
         self.falls = FallDetector::default();
         self.ramp.reset();
         self.walk.reset();
-        match self.activity {
-            Activity::Resting | Activity::Walking => {}
-            Activity::Kicking => self.end_skill(SkillResult::Interrupted),
-            Activity::Waiting => self.end_skill(SkillResult::Performed),
+        match self.state {
+            BodyState::Resting | BodyState::Walking => {}
+            BodyState::Kicking => self.end_skill(SkillResult::Interrupted),
+            BodyState::Waiting => self.end_skill(SkillResult::Performed),
         }
     }
 
@@ -205,14 +205,14 @@ impl BoosterControl {
 
     /// The velocity to walk with; none for a robot whose joints are slack.
     fn wanted(&self) -> Option<WalkVelocity> {
-        match self.activity {
-            Activity::Resting | Activity::Waiting => None,
+        match self.state {
+            BodyState::Resting | BodyState::Waiting => None,
             _ if self.is_fallen() => None,
-            Activity::Walking => {
+            BodyState::Walking => {
                 let Actuators { walk_x, walk_y, walk_turn, .. } = self.commands;
                 Some(WalkVelocity { x: walk_x, y: walk_y, turn: walk_turn })
             }
-            Activity::Kicking => Some(WalkVelocity::default()),
+            BodyState::Kicking => Some(WalkVelocity::default()),
         }
     }
 
@@ -220,7 +220,7 @@ impl BoosterControl {
     fn end_skill(&mut self, result: SkillResult) {
         self.kick = None;
         (self.skill_done, self.skill_result) = (self.skill_number, result);
-        self.activity = Activity::Walking;
+        self.state = BodyState::Walking;
     }
 
     fn move_head(&mut self) {
@@ -247,7 +247,7 @@ impl BoosterControl {
 
     /// Sets the commands in the plane. A skill begins if its number is new and no other is active.
     pub(crate) fn act(&mut self, actuators: &Actuators) {
-        if self.activity == Activity::Resting {
+        if self.state == BodyState::Resting {
             return;
         }
         self.commands = *actuators;
@@ -256,16 +256,16 @@ impl BoosterControl {
             return;
         }
         self.skill_number = number;
-        self.activity = match (self.activity, skill) {
-            (Activity::Walking, Skill::KickLeft | Skill::KickRight) if !self.is_fallen() => {
+        self.state = match (self.state, skill) {
+            (BodyState::Walking, Skill::KickLeft | Skill::KickRight) if !self.is_fallen() => {
                 let foot = if skill == Skill::KickLeft { Foot::Left } else { Foot::Right };
                 self.kick = Some(Kick::new(self.robot, self.kick_parameters, foot));
-                Activity::Kicking
+                BodyState::Kicking
             }
-            (Activity::Walking, Skill::StandUp) if self.is_fallen() => Activity::Waiting,
-            (Activity::Walking, _) => {
+            (BodyState::Walking, Skill::StandUp) if self.is_fallen() => BodyState::Waiting,
+            (BodyState::Walking, _) => {
                 (self.skill_done, self.skill_result) = (number, SkillResult::Refused);
-                Activity::Walking
+                BodyState::Walking
             }
             (busy, _) => busy,
         };
@@ -280,7 +280,7 @@ impl BoosterControl {
     pub(crate) fn rest(&mut self) {
         self.commands = Actuators::default();
         self.targets = JointTargets::default();
-        self.activity = Activity::Resting;
+        self.state = BodyState::Resting;
     }
 
     /// Whether the robot lies.
@@ -289,14 +289,14 @@ impl BoosterControl {
     }
 
     fn posture(&self) -> Posture {
-        match self.activity {
-            Activity::Waiting => Posture::StandingUp,
+        match self.state {
+            BodyState::Waiting => Posture::StandingUp,
             _ if self.is_fallen() => Posture::Fallen,
-            Activity::Resting => Posture::Sitting,
-            Activity::Kicking => Posture::Busy,
-            Activity::Walking if self.falls.is_inclined() => Posture::Busy,
-            Activity::Walking if self.ramp.velocity() != WalkVelocity::default() => Posture::Walking,
-            Activity::Walking => Posture::Standing,
+            BodyState::Resting => Posture::Sitting,
+            BodyState::Kicking => Posture::Busy,
+            BodyState::Walking if self.falls.is_inclined() => Posture::Busy,
+            BodyState::Walking if self.ramp.velocity() != WalkVelocity::default() => Posture::Walking,
+            BodyState::Walking => Posture::Standing,
         }
     }
 

@@ -24,17 +24,12 @@ const STILL: f64 = 2e-3;
 /// Feet whose heights differ by less are both on the ground, m.
 const SAME_HEIGHT: f64 = 2e-3;
 
-/// What the body began to do last.
-#[derive(Clone, Copy, PartialEq, Debug)]
-enum Deed {
-    None,
-    Skill(Skill),
-}
-
 /// Follows the angles of the joints and says what a body in the plane does.
 #[derive(Debug)]
 pub(super) struct JointMotion {
-    deed: Deed,
+    /// The skill that the angles amount to at present.
+    observed: Option<Skill>,
+    /// The skill that was observed last.
     skill: Skill,
     skill_number: u64,
     was_stiff: bool,
@@ -44,7 +39,7 @@ pub(super) struct JointMotion {
 impl Default for JointMotion {
     fn default() -> JointMotion {
         JointMotion {
-            deed: Deed::None,
+            observed: None,
             skill: Skill::NoSkill,
             skill_number: 0,
             was_stiff: false,
@@ -68,14 +63,14 @@ impl JointMotion {
     /// The commands in the plane that the change of the angles amounts to.
     pub(super) fn observe(&mut self, before: &JointAngles, now: &JointAngles, posture: Posture) -> Actuators {
         let feet = Side::BOTH.map(|side| foot_in_torso(side, now));
-        let deed = match posture {
-            Posture::Fallen if is_folded(now) => Deed::Skill(Skill::StandUp),
-            Posture::Standing | Posture::Walking => upright_deed(&feet),
-            _ => Deed::None,
+        let observed = match posture {
+            Posture::Fallen if is_folded(now) => Some(Skill::StandUp),
+            Posture::Standing | Posture::Walking => upright_skill(&feet),
+            _ => None,
         };
-        if deed != self.deed {
-            self.deed = deed;
-            if let Deed::Skill(skill) = deed {
+        if observed != self.observed {
+            self.observed = observed;
+            if let Some(skill) = observed {
                 (self.skill, self.skill_number) = (skill, self.skill_number + 1);
             }
         }
@@ -87,7 +82,7 @@ impl JointMotion {
         };
         let velocity = displacement(before, now).map(|way| way / CYCLE_SECONDS);
         let is_still = velocity.iter().all(|part| part.abs() < STILL);
-        let [walk_x, walk_y, walk_turn] = if is_still || deed != Deed::None { [0.0; 3] } else { velocity };
+        let [walk_x, walk_y, walk_turn] = if is_still || observed.is_some() { [0.0; 3] } else { velocity };
         Actuators {
             walk_x,
             walk_y,
@@ -104,7 +99,7 @@ fn is_folded(angles: &JointAngles) -> bool {
 }
 
 /// What a body on its feet begins: a fall to a side, or a kick.
-fn upright_deed(feet: &[Isometry3<f64>; 2]) -> Deed {
+fn upright_skill(feet: &[Isometry3<f64>; 2]) -> Option<Skill> {
     let [left, right] = feet;
     // The foot on the ground is the one above which the other is.
     let (support, foot, other) = match left.inverse_transform_point(&right.translation.vector.into()).z >= 0.0
@@ -115,7 +110,7 @@ fn upright_deed(feet: &[Isometry3<f64>; 2]) -> Deed {
     let mass = foot.inverse_transform_point(&Point3::from(CENTRE_OF_MASS));
     if support.sign() * mass.y > SOLE_OUTWARDS {
         let hip = foot.inverse_transform_point(&Point3::new(HIP.x, support.sign() * HIP.y, HIP.z));
-        return Deed::Skill(match (support, hip.coords.norm() < KNEELING_HIP) {
+        return Some(match (support, hip.coords.norm() < KNEELING_HIP) {
             (Side::Left, true) => Skill::FallLeft,
             (Side::Right, true) => Skill::FallRight,
             (Side::Left, false) => Skill::DiveLeft,
@@ -124,12 +119,12 @@ fn upright_deed(feet: &[Isometry3<f64>; 2]) -> Deed {
     }
     let swinging = foot.inverse_transform_point(&other.translation.vector.into());
     if swinging.z > KICK_LIFT && swinging.x < -KICK_BACK {
-        return Deed::Skill(match support {
+        return Some(match support {
             Side::Left => Skill::KickRight,
             Side::Right => Skill::KickLeft,
         });
     }
-    Deed::None
+    None
 }
 
 #[cfg(test)]
