@@ -14,7 +14,7 @@ pub struct FieldMoment {
     pub time: Duration,
     /// The ball, in the field frame.
     pub ball: Vector,
-    /// The robots, in the same order at all times.
+    /// The robots. One that is missing at a time is not visible then.
     pub robots: Vec<PicturedRobot>,
     /// The goals of each team, by index.
     pub goals: [u32; 2],
@@ -79,14 +79,17 @@ const NAME: &str = r##"y="38" font-size="18" fill="#fff""##;
 impl FieldAnimation<'_> {
     fn draw(&mut self, field: &FieldGeometry, teams: [&str; 2]) -> fmt::Result {
         let width = self.drawing.begin(field)?;
-        let Some(first) = self.moments.first() else { return self.drawing.end() };
-        for (index, robot) in first.robots.iter().enumerate() {
-            self.belief(index, robot)?;
+        if self.moments.is_empty() {
+            return self.drawing.end();
         }
-        for (index, robot) in first.robots.iter().enumerate() {
-            self.robot(index, robot)?;
+        let tracks = RobotTrack::of(self.moments);
+        for track in &tracks {
+            self.belief(track)?;
         }
-        let place = self.moving(|moment| moment.ball);
+        for track in &tracks {
+            self.robot(track)?;
+        }
+        let place = self.moving(self.moments.iter().map(|moment| moment.ball));
         write!(self.drawing.text, r#"<g transform="translate({})">"#, place.first)?;
         let ball = r##"<circle r="5" fill="#ff7a1a" stroke="#8a3a00" stroke-width="0.8"/><circle cx="-1.4" cy="-1.5" r="1.3" fill="#ffd9b8"/>"##;
         writeln!(self.drawing.text, "{}{ball}</g>", place.animation)?;
@@ -95,15 +98,12 @@ impl FieldAnimation<'_> {
         self.drawing.end()
     }
 
-    fn robot(&mut self, index: usize, robot: &PicturedRobot) -> fmt::Result {
-        let place = self.moving(|moment| moment.robots[index].pose.position);
-        let presence = |robot: &PicturedRobot| if robot.on_field { "1" } else { "0.45" };
-        let opacity = self.stepping("opacity", |moment| presence(&moment.robots[index]).into());
-        let heading = self.turning(index);
-        let fill = self.stepping("fill", |moment| shirt(moment.colours[robot.team]).into());
-        let shown = |upright: bool| {
-            move |moment: &FieldMoment| u8::from(moment.robots[index].upright == upright).to_string()
-        };
+    fn robot(&mut self, track: &RobotTrack) -> fmt::Result {
+        let place = self.moving(track.robots.iter().map(|robot| robot.pose.position));
+        let opacity = self.stepping("opacity", track.presences.iter().map(|presence| (*presence).into()));
+        let heading = self.turning(track);
+        let fill = self.stepping("fill", self.colours(track.team, shirt));
+        let shown = |upright| track.robots.iter().map(move |it| u8::from(it.upright == upright).to_string());
         let (standing, lying) =
             (self.stepping("opacity", shown(true)), self.stepping("opacity", shown(false)));
         let text = &mut self.drawing.text;
@@ -121,20 +121,21 @@ impl FieldAnimation<'_> {
         writeln!(
             text,
             r##"<text y="4.6" font-size="13" font-weight="700" fill="#fff" text-anchor="middle">{}</text></g>"##,
-            robot.number
+            track.number
         )
     }
 
     /// A faint circle where a robot believes the ball to be.
-    fn belief(&mut self, index: usize, robot: &PicturedRobot) -> fmt::Result {
-        if self.moments.iter().all(|moment| moment.robots[index].believed_ball.is_none()) {
+    fn belief(&mut self, track: &RobotTrack) -> fmt::Result {
+        let robots = &track.robots;
+        if robots.iter().all(|robot| robot.believed_ball.is_none()) {
             return Ok(());
         }
-        let of = |moment: &FieldMoment| moment.robots[index].believed_ball;
-        let place = self.moving(|moment| of(moment).unwrap_or(moment.robots[index].pose.position));
-        let shown = |moment: &FieldMoment| if of(moment).is_some() { "0.6" } else { "0" };
-        let opacity = self.stepping("opacity", |moment| shown(moment).into());
-        let stroke = self.stepping("stroke", |moment| faint(moment.colours[robot.team]).into());
+        let place =
+            self.moving(robots.iter().map(|robot| robot.believed_ball.unwrap_or(robot.pose.position)));
+        let shown = |robot: &PicturedRobot| if robot.believed_ball.is_some() { "0.6" } else { "0" };
+        let opacity = self.stepping("opacity", robots.iter().map(|robot| shown(robot).into()));
+        let stroke = self.stepping("stroke", self.colours(track.team, faint));
         let text = &mut self.drawing.text;
         write!(
             text,
@@ -147,7 +148,7 @@ impl FieldAnimation<'_> {
     /// Names, score, time and state of the game.
     fn board(&mut self, width: f64, teams: [&str; 2]) -> fmt::Result {
         for (index, x, chip, anchor) in [(0, 44.0, 20.0, "start"), (1, width - 44.0, width - 34.0, "end")] {
-            let fill = self.stepping("fill", |moment| shirt(moment.colours[index]).into());
+            let fill = self.stepping("fill", self.colours(index, shirt));
             let text = &mut self.drawing.text;
             write!(
                 text,
@@ -201,7 +202,8 @@ impl FieldAnimation<'_> {
         all.sort();
         all.dedup();
         for one in all {
-            let shown = self.stepping("opacity", |moment| u8::from(content(moment) == one).to_string());
+            let is_shown = |moment| u8::from(content(moment) == one).to_string();
+            let shown = self.stepping("opacity", self.moments.iter().map(is_shown));
             let text = &mut self.drawing.text;
             write!(text, r#"<text {place} fill="{fill}" text-anchor="middle" opacity="{}">"#, shown.first)?;
             writeln!(text, "{}{}</text>", escape(&one), shown.animation)?;
@@ -209,20 +211,25 @@ impl FieldAnimation<'_> {
         Ok(())
     }
 
+    /// The colour of a team at each moment.
+    fn colours(&self, team: usize, of: impl Fn(TeamColour) -> &'static str) -> impl Iterator<Item = String> {
+        self.moments.iter().map(move |moment| of(moment.colours[team]).into())
+    }
+
     /// A position that changes from moment to moment.
-    fn moving(&self, position: impl Fn(&FieldMoment) -> Vector) -> AnimatedValue {
-        let place = |moment| {
-            let (x, y) = self.drawing.place(position(moment));
+    fn moving(&self, positions: impl Iterator<Item = Vector>) -> AnimatedValue {
+        let place = |position| {
+            let (x, y) = self.drawing.place(position);
             format!("{x:.0} {y:.0}")
         };
-        self.transformed("translate", self.moments.iter().map(place).collect())
+        self.transformed("translate", positions.map(place).collect())
     }
 
     /// The heading of a robot, in degrees, on the shorter way from moment to moment.
-    fn turning(&self, robot: usize) -> AnimatedValue {
+    fn turning(&self, track: &RobotTrack) -> AnimatedValue {
         let mut before = 0.0;
-        let turned = self.moments.iter().map(|moment| {
-            let degrees = -moment.robots[robot].pose.heading.to_degrees();
+        let turned = track.robots.iter().map(|robot| {
+            let degrees = -robot.pose.heading.to_degrees();
             let turns: f64 = (degrees - before) / 360.0;
             before = degrees - 360.0 * turns.round();
             format!("{before:.0}")
@@ -243,8 +250,8 @@ impl FieldAnimation<'_> {
     }
 
     /// A value that changes at once.
-    fn stepping(&self, attribute: &str, value: impl Fn(&FieldMoment) -> String) -> AnimatedValue {
-        let values: Vec<String> = self.moments.iter().map(value).collect();
+    fn stepping(&self, attribute: &str, values: impl Iterator<Item = String>) -> AnimatedValue {
+        let values: Vec<String> = values.collect();
         let first = values.first().cloned().unwrap_or_default();
         let mut changes: Vec<(f64, &String)> = Vec::new();
         for (index, value) in values.iter().enumerate() {
@@ -268,6 +275,51 @@ impl FieldAnimation<'_> {
     fn seconds(&self) -> f64 {
         let ends = self.moments.first().zip(self.moments.last());
         ends.map_or(0.0, |(first, last)| last.time.saturating_sub(first.time).as_secs_f64())
+    }
+}
+
+/// A robot at all moments.
+struct RobotTrack {
+    team: usize,
+    number: u8,
+    /// At a moment that does not have the robot it is where it was before, or where it will be first.
+    robots: Vec<PicturedRobot>,
+    /// The opacity at each moment.
+    presences: Vec<&'static str>,
+}
+
+impl RobotTrack {
+    /// All robots of these moments. The moments may come from several fields, or from a person.
+    fn of(moments: &[FieldMoment]) -> Vec<RobotTrack> {
+        let mut tracks: Vec<RobotTrack> = Vec::new();
+        for robot in moments.iter().flat_map(|moment| &moment.robots) {
+            if !tracks.iter().any(|track| track.is_of(robot)) {
+                tracks.push(RobotTrack::follow(*robot, moments));
+            }
+        }
+        tracks
+    }
+
+    fn follow(first: PicturedRobot, moments: &[FieldMoment]) -> RobotTrack {
+        let PicturedRobot { team, number, .. } = first;
+        let (robots, presences) = (Vec::new(), Vec::new());
+        let mut track = RobotTrack { team, number, robots, presences };
+        let mut last = first;
+        for moment in moments {
+            let found = moment.robots.iter().find(|robot| track.is_of(robot));
+            last = found.copied().unwrap_or(PicturedRobot { believed_ball: None, ..last });
+            track.robots.push(last);
+            track.presences.push(match found {
+                Some(robot) if robot.on_field => "1",
+                Some(_) => "0.45",
+                None => "0",
+            });
+        }
+        track
+    }
+
+    fn is_of(&self, robot: &PicturedRobot) -> bool {
+        (self.team, self.number) == (robot.team, robot.number)
     }
 }
 
@@ -324,6 +376,21 @@ mod tests {
         assert!(still.contains("1 m</text>") && !still.contains("<animate"), "{still}");
         assert!(!drawn(&[moment(0, 0.0, None)]).contains("opacity=\"0.6\""));
         assert_eq!(still.matches("<g").count(), still.matches("</g>").count());
+    }
+
+    #[test]
+    fn robots_are_followed_by_team_and_number() {
+        let mut moments = [0, 1, 2].map(|seconds| moment(seconds, 0.0, None));
+        let first = moments[0].robots[0];
+        let other = PicturedRobot { number: 5, pose: Pose::new(0.0, 0.0, 0.0), ..first };
+        moments[1].robots = vec![other, first];
+        moments[2].robots.clear();
+        let animated = drawn(&moments);
+        assert!(animated.contains(">2</text>") && animated.contains(">5</text>"), "{animated}");
+        assert!(!animated.contains("type=\"translate\""), "no robot has moved: {animated}");
+        let visible =
+            |values: &str| format!(r#"attributeName="opacity" calcMode="discrete" values="{values}""#);
+        assert!(animated.contains(&visible("1;0")) && animated.contains(&visible("0;1;0")), "{animated}");
     }
 
     #[test]
