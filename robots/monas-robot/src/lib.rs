@@ -47,6 +47,7 @@ pub mod conformance;
 mod fall_detector;
 mod joint_targets;
 mod robot;
+mod skill_progress;
 pub mod topics;
 mod wrapped_body;
 
@@ -61,6 +62,7 @@ pub use body_option::{BodyFault, BodyOption, OptionKind};
 pub use fall_detector::FallDetector;
 pub use joint_targets::JointTargets;
 pub use robot::{Error, ErrorKind, Percepts, Robot};
+pub use skill_progress::SkillProgress;
 pub use wrapped_body::{Disturbances, WrappedBody};
 
 /// What [`body_kind!`] expands to.

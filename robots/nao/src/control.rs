@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use monas_robot::{
     Actuators, Anatomy, Battery, Contacts, Error, FallDetector, Inertial, JointCommands, JointTargets,
-    Joints, Leds, Percepts, Posture, Sensors, Skill, SkillResult, Sonar,
+    Joints, Leds, Percepts, Posture, Sensors, Skill, SkillProgress, SkillResult, Sonar,
 };
 use narukom::Timestamp;
 
@@ -49,9 +49,7 @@ pub(crate) struct NaoControl {
     actions: SpecialActions,
     state: BodyState,
     commands: Actuators,
-    skill_number: u64,
-    skill_done: u64,
-    skill_result: SkillResult,
+    skills: SkillProgress,
     falls: FallDetector,
     targets: JointTargets,
     leds: Leds,
@@ -77,9 +75,7 @@ impl NaoControl {
             walk: Box::new(SteppingWalk::default()),
             state: BodyState::Waiting,
             commands: Actuators::default(),
-            skill_number: 0,
-            skill_done: 0,
-            skill_result: SkillResult::NoResult,
+            skills: SkillProgress::default(),
             falls: FallDetector::default(),
             targets: JointTargets::default(),
             leds: Leds::default(),
@@ -224,20 +220,18 @@ impl NaoControl {
             return;
         }
         self.commands = *actuators;
-        let (number, wanted) = (actuators.skill_number, actuators.skill());
-        if number == self.skill_number {
+        if !self.skills.command(actuators.skill_number) {
             return;
         }
-        self.skill_number = number;
+        let wanted = actuators.skill();
         match (&mut self.state, self.actions.motion(wanted, self.angles)) {
             (BodyState::Active { skill: skill @ None }, Some(motion)) => *skill = Some((wanted, motion)),
-            (BodyState::Active { skill: Some(_) }, _) => {}
-            _ => (self.skill_done, self.skill_result) = (number, SkillResult::Refused),
+            _ => self.skills.end(SkillResult::Refused),
         }
     }
 
     fn end_skill(&mut self, result: SkillResult) {
-        (self.skill_done, self.skill_result) = (self.skill_number, result);
+        self.skills.end(result);
         self.walk.stop();
         self.state = BodyState::Active { skill: None };
     }
@@ -297,6 +291,7 @@ impl NaoControl {
         let packet = &self.sensors;
         let [odometry_x, odometry_y, odometry_turn] = std::mem::take(&mut self.odometry);
         let [torso_roll, torso_pitch] = packet.angles.map(f64::from);
+        let (skill_done, skill_result) = self.skills.done();
         let touched = |touch| packet.is_touched(touch);
         let left_bumper = touched(Touch::LeftFootLeft) || touched(Touch::LeftFootRight);
         let right_bumper = touched(Touch::RightFootLeft) || touched(Touch::RightFootRight);
@@ -313,8 +308,8 @@ impl NaoControl {
             left_bumper,
             right_bumper,
             posture: self.posture() as i32,
-            skill_done: self.skill_done,
-            skill_result: self.skill_result as i32,
+            skill_done,
+            skill_result: skill_result as i32,
             battery: packet.battery[0].into(),
             relaxed: packet.stiffness.iter().all(|&stiffness| stiffness <= 0.0),
         };
@@ -385,4 +380,35 @@ const CHARGING: i32 = 0x80;
 fn refill(list: &mut Vec<f64>, values: impl IntoIterator<Item = f64>) {
     list.clear();
     list.extend(values);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_skill_during_another_is_refused_and_the_other_is_reported_by_its_own_number() {
+        let mut control = NaoControl::of(&BTreeMap::new()).unwrap();
+        let mut percepts = Percepts::default();
+        let mut packet = SensorPacket::default();
+        let mut cycle = |control: &mut NaoControl| {
+            control.receive(&packet);
+            packet.position = control.actuators().position;
+            control.percepts(Timestamp::ZERO, &mut percepts);
+            (percepts.sensors.skill_done, percepts.sensors.skill_result())
+        };
+        let kick = |skill: Skill, skill_number| Actuators {
+            skill: skill as i32,
+            skill_number,
+            ..Actuators::default()
+        };
+        // The joints become stiff.
+        assert_eq!((0..100).map(|_| cycle(&mut control)).last(), Some((0, SkillResult::NoResult)));
+        control.act(&kick(Skill::KickLeft, 1));
+        cycle(&mut control);
+        control.act(&kick(Skill::KickRight, 2));
+        assert_eq!(cycle(&mut control), (2, SkillResult::Refused));
+        let ended = (0..1000).map(|_| cycle(&mut control)).find(|(done, _)| *done != 2);
+        assert_eq!(ended, Some((1, SkillResult::Performed)));
+    }
 }

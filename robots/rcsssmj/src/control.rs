@@ -3,7 +3,7 @@
 
 use monas_robot::{
     Actuators, Anatomy, Error, FallDetector, Inertial, JointCommands, JointTargets, Joints, ObjectKind,
-    Percepts, Posture, Sensors, Sighting, Sightings, Skill, SkillResult,
+    Percepts, Posture, Sensors, Sighting, Sightings, Skill, SkillProgress, SkillResult,
 };
 use narukom::Timestamp;
 
@@ -40,9 +40,7 @@ pub(crate) struct BoosterControl {
     kick: Option<Kick>,
     state: BodyState,
     commands: Actuators,
-    skill_number: u64,
-    skill_done: u64,
-    skill_result: SkillResult,
+    skills: SkillProgress,
     targets: JointTargets,
     inertia: Inertia,
     stance: Stance,
@@ -72,9 +70,7 @@ impl BoosterControl {
             kick: None,
             state: BodyState::Walking,
             commands: Actuators::default(),
-            skill_number: 0,
-            skill_done: 0,
-            skill_result: SkillResult::NoResult,
+            skills: SkillProgress::default(),
             targets: JointTargets::default(),
             stance: Stance::new(robot, &[0.0; JOINTS], &inertia.down()),
             inertia,
@@ -219,7 +215,7 @@ impl BoosterControl {
     /// Ends a kick, or the time in which the robot waits.
     fn end_skill(&mut self, result: SkillResult) {
         self.kick = None;
-        (self.skill_done, self.skill_result) = (self.skill_number, result);
+        self.skills.end(result);
         self.state = BodyState::Walking;
     }
 
@@ -251,11 +247,10 @@ impl BoosterControl {
             return;
         }
         self.commands = *actuators;
-        let (number, skill) = (actuators.skill_number, actuators.skill());
-        if number == self.skill_number {
+        if !self.skills.command(actuators.skill_number) {
             return;
         }
-        self.skill_number = number;
+        let skill = actuators.skill();
         self.state = match (self.state, skill) {
             (BodyState::Walking, Skill::KickLeft | Skill::KickRight) if !self.is_fallen() => {
                 let foot = if skill == Skill::KickLeft { Foot::Left } else { Foot::Right };
@@ -263,11 +258,10 @@ impl BoosterControl {
                 BodyState::Kicking
             }
             (BodyState::Walking, Skill::StandUp) if self.is_fallen() => BodyState::Waiting,
-            (BodyState::Walking, _) => {
-                (self.skill_done, self.skill_result) = (number, SkillResult::Refused);
-                BodyState::Walking
+            (state, _) => {
+                self.skills.end(SkillResult::Refused);
+                state
             }
-            (busy, _) => busy,
         };
     }
 
@@ -306,6 +300,7 @@ impl BoosterControl {
         let [odometry_x, odometry_y, odometry_turn] = std::mem::take(&mut self.odometry);
         let (torso_roll, torso_pitch) = inclination(&self.inertia.down());
         let positions = &self.percept.positions;
+        let (skill_done, skill_result) = self.skills.done();
         percepts.sensors = Sensors {
             measured_at,
             head_yaw: self.anatomy.head_yaw.clamp(positions[HEAD_YAW]),
@@ -316,8 +311,8 @@ impl BoosterControl {
             odometry_y,
             odometry_turn,
             posture: self.posture() as i32,
-            skill_done: self.skill_done,
-            skill_result: self.skill_result as i32,
+            skill_done,
+            skill_result: skill_result as i32,
             battery: 1.0,
             relaxed: self.motors.iter().all(|motor| motor.stiffness <= 0.0),
             ..Sensors::default()
@@ -363,4 +358,35 @@ impl BoosterControl {
 fn refill(list: &mut Vec<f64>, values: impl IntoIterator<Item = f64>) {
     list.clear();
     list.extend(values);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sine_parameters::SineParameters;
+    use crate::sine_walk::SineWalk;
+    use crate::t1::T1;
+
+    #[test]
+    fn a_skill_during_another_is_refused_and_the_other_is_reported_by_its_own_number() {
+        let walk = SineWalk::new(&T1, SineParameters::own(&T1).unwrap());
+        let mut control = BoosterControl::new(&T1, Box::new(walk), KickParameters::own(&T1).unwrap());
+        let mut percepts = Percepts::default();
+        let mut done = |control: &mut BoosterControl| {
+            control.percepts(Timestamp::ZERO, &mut percepts);
+            (percepts.sensors.skill_done, percepts.sensors.skill_result())
+        };
+        let kick = |skill: Skill, skill_number| Actuators {
+            skill: skill as i32,
+            skill_number,
+            ..Actuators::default()
+        };
+        control.act(&kick(Skill::KickLeft, 1));
+        assert_eq!(done(&mut control), (0, SkillResult::NoResult));
+        control.act(&kick(Skill::KickRight, 2));
+        assert_eq!(done(&mut control), (2, SkillResult::Refused));
+        // The kick ends where the referee puts the robot to another place.
+        control.placed();
+        assert_eq!(done(&mut control), (1, SkillResult::Interrupted));
+    }
 }

@@ -1,6 +1,6 @@
 //! The skill that a body performs for its agents, from the command to its end.
 
-use monas_robot::{Actuators, Skill, SkillResult};
+use monas_robot::{Actuators, Skill, SkillProgress, SkillResult};
 
 use crate::{BodyPhase, Motion, Side};
 
@@ -11,10 +11,8 @@ const PATIENCE: u32 = 3;
 /// The active skill and the last that ended.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct SkillTrack {
-    number: u64,
     active: Option<ActiveSkill>,
-    done: u64,
-    result: SkillResult,
+    progress: SkillProgress,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -28,18 +26,15 @@ struct ActiveSkill {
 impl SkillTrack {
     /// Processes a command; a skill begins if its number is new and no other is active.
     pub(super) fn command(&mut self, actuators: &Actuators) {
-        if actuators.skill_number == self.number {
+        if !self.progress.command(actuators.skill_number) {
             return;
         }
-        self.number = actuators.skill_number;
         match motion_of(actuators.skill()) {
-            Some(motion) if self.active.is_none() => {
+            Some(motion) => {
                 let ball_speed = if actuators.ball_speed.is_finite() { actuators.ball_speed } else { 0.0 };
                 self.active = Some(ActiveSkill { motion, ball_speed, begun: false, readings: 0 });
             }
-            // No skill, or one requested while another is active: it ends at once.
-            _ if self.active.is_none() => self.end(SkillResult::Refused),
-            _ => {}
+            None => self.end(SkillResult::Refused),
         }
     }
 
@@ -64,7 +59,7 @@ impl SkillTrack {
 
     fn end(&mut self, result: SkillResult) {
         self.active = None;
-        (self.done, self.result) = (self.number, result);
+        self.progress.end(result);
     }
 
     /// The motion of the legs for the active skill, if any.
@@ -79,7 +74,7 @@ impl SkillTrack {
 
     /// The number of the last skill that has ended, and how.
     pub(super) fn done(&self) -> (u64, SkillResult) {
-        (self.done, self.result)
+        self.progress.done()
     }
 }
 
@@ -136,6 +131,22 @@ mod tests {
         track.command(&kick(1));
         track.observe(BodyPhase::Standing);
         assert_eq!((track.motion(), track.done()), (None, (1, SkillResult::Performed)));
+    }
+
+    #[test]
+    fn a_skill_during_another_is_refused_and_the_other_is_reported_by_its_own_number() {
+        let mut track = SkillTrack::default();
+        track.command(&kick(1));
+        track.observe(BodyPhase::Kicking(Side::Left));
+        track.command(&Actuators { skill: Skill::KickRight as i32, ..kick(2) });
+        assert_eq!(
+            (track.motion(), track.done()),
+            (Some(Motion::Kick(Side::Left)), (2, SkillResult::Refused))
+        );
+        track.observe(BodyPhase::Standing);
+        assert_eq!((track.motion(), track.done()), (None, (1, SkillResult::Performed)));
+        track.command(&kick(2));
+        assert_eq!(track.motion(), None);
     }
 
     #[test]
