@@ -399,4 +399,15 @@ mod tests {
             "{found:#?}"
         );
     }
+
+    #[test]
+    fn the_number_that_stands_for_no_team_is_no_team() {
+        let found = |number: u8| {
+            diagnostics_of(&format!(
+                "<match><team number='1' name='A' colour='blue' side='left'/>\n<team number='{number}' name='B' colour='red' side='right'/></match>",
+            ))
+        };
+        assert!(found(254).is_empty(), "{:#?}", found(254));
+        assert!(found(255)[0].starts_with("match.xml:2:15: error"), "{:#?}", found(255));
+    }
 }

@@ -52,7 +52,8 @@ fn game() -> ElementRule {
 
 fn team() -> ElementRule {
     ElementRule::new("team", "a team of robots")
-        .attribute(AttributeRule::new("number", Kind::whole_in(0, 255), "its number").required())
+        // In packets of the league's GameController the number 255 stands for no team.
+        .attribute(AttributeRule::new("number", Kind::whole_in(0, 254), "its number").required())
         .attribute(AttributeRule::new("name", Kind::Text, "its name").required())
         .attribute(AttributeRule::new("colour", Kind::Word(vec!["blue", "red"]), "its colour").required())
         .attribute(

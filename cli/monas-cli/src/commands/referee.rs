@@ -61,8 +61,9 @@ fn teams(text: &str) -> Result<Teams, String> {
         .split_once(',')
         .and_then(|(left, right)| Some((left.trim().parse::<u8>().ok()?, right.trim().parse::<u8>().ok()?)));
     match numbers {
-        Some((left, right)) if left != right => Ok(Teams([left, right])),
-        _ => Err("two different numbers from 0 to 255 are expected, such as 1,2".into()),
+        // In packets the number 255 stands for no team.
+        Some((left, right)) if left != right && left.max(right) < 255 => Ok(Teams([left, right])),
+        _ => Err("two different numbers from 0 to 254 are expected, such as 1,2".into()),
     }
 }
 
@@ -83,6 +84,7 @@ pub(crate) fn execute(
         sender,
         whistle: WhistleDelay::new(arguments.whistle_delay),
         sent: None,
+        is_send_failing: false,
         connections: BTreeMap::new(),
         lines: VecDeque::new(),
         reads_on_at: Duration::ZERO,
@@ -120,6 +122,8 @@ struct Referee {
     whistle: WhistleDelay,
     /// The state that was sent last.
     sent: Option<GameControlData>,
+    /// Whether the last packet could not be sent.
+    is_send_failing: bool,
     connections: BTreeMap<(u8, u8), Connection>,
     /// Lines that have been read and wait.
     lines: VecDeque<String>,
@@ -191,9 +195,14 @@ impl Referee {
         let shown = self.whistle.shown(self.game.data(), now);
         let has_changed = self.sent.as_ref().is_none_or(|sent| sent.state != shown.state);
         if self.sender.is_due(now) || has_changed {
-            self.sender.send(&shown, now).map_err(|error| {
-                CommandFailure::failed(Format::Text, format!("the decisions cannot be sent: {error}"))
-            })?;
+            // The network may come back, and the game would be lost with this process.
+            let sent = self.sender.send(&shown, now);
+            let was_failing = std::mem::replace(&mut self.is_send_failing, sent.is_err());
+            if let Err(error) = sent
+                && !was_failing
+            {
+                writeln!(console.err, "the decisions cannot be sent: {error}; it is tried again")?;
+            }
             self.sent = Some(shown);
         }
         loop {

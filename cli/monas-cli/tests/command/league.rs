@@ -110,3 +110,21 @@ fn the_decisions_of_a_person_decide_a_match() {
     let said = |text: &str| all.iter().any(|object| object["text"] == text);
     assert!(said("kick-off for Blue") && said("penalty for Red 3: decided by a person"), "{played:?}");
 }
+
+/// A game is in the process of its referee alone, which therefore goes on without a network.
+#[test]
+fn a_referee_whose_packets_cannot_be_sent_goes_on_with_the_game() {
+    // No packet can be sent to port 0.
+    let referee = ["referee", "127.0.0.1:0", "--return-port", "0", "--teams", "1,2"];
+    let answer = given(&referee, "ready 1\nset\nplay\nwait 1\ngoal 1\n");
+    assert_eq!(answer.code, Some(0), "{answer:?}");
+    assert_eq!(answer.err.matches("the decisions cannot be sent").count(), 1, "{answer:?}");
+    assert!(answer.out.contains("READY, 1 1 : 0 2"), "{answer:?}");
+}
+
+#[test]
+fn the_number_that_stands_for_no_team_is_refused() {
+    let answer = given(&["referee", "127.0.0.1:0", "--return-port", "0", "--teams", "1,255"], "ready 255\n");
+    assert_eq!(answer.code, Some(2), "{answer:?}");
+    assert!(answer.err.contains("two different numbers from 0 to 254"), "{answer:?}");
+}
