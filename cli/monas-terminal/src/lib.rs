@@ -29,7 +29,6 @@
 
 mod command_failure;
 mod command_output;
-pub mod duration;
 mod exit;
 mod file_output;
 mod format;

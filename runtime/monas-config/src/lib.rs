@@ -159,7 +159,7 @@ pub(crate) fn is_toml_text(source: &yase::Source) -> bool {
     }
 }
 
-/// Parses a duration: a number and `ns`, `us`, `ms`, `s` or `min`.
+/// Parses a duration: a number and `ns`, `us`, `ms`, `s`, `min` or `h`.
 pub fn duration(text: &str) -> Option<std::time::Duration> {
-    monas_core::parameters::duration(text)
+    monas_core::duration::parse(text).ok()
 }

@@ -43,6 +43,7 @@ pub mod call;
 pub mod call_slot;
 pub mod chart_runner;
 pub mod coverage;
+pub mod duration;
 pub mod error;
 pub mod frequency;
 pub mod function;

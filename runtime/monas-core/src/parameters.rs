@@ -6,6 +6,8 @@ use std::time::Duration;
 
 use yase::diagnostic::nearest;
 
+use crate::duration;
+
 /// The parameters of one activity, as given in a configuration or changed while it runs.
 ///
 /// An activity queries the keys it knows. Keys that it did not query are unknown, and values not of
@@ -91,7 +93,7 @@ impl Parameters {
 
     /// A duration, such as `100ms`.
     pub fn duration(&self, key: &'static str) -> Option<Duration> {
-        self.read(key, "a time such as `300s` or `100ms`", duration)
+        self.read(key, "a time such as `300s` or `100ms`", |text| duration::parse(text).ok())
     }
 
     /// The result of `parse`; if it is none, the parameter is faulty and `expected` describes a
@@ -137,21 +139,6 @@ impl Parameters {
     }
 }
 
-/// Parses a duration: a number and `ns`, `us`, `ms`, `s` or `min`.
-pub fn duration(text: &str) -> Option<Duration> {
-    let unit_start = text.find(|c: char| c.is_alphabetic())?;
-    let seconds = match &text[unit_start..] {
-        "ns" => 1e-9,
-        "us" => 1e-6,
-        "ms" => 1e-3,
-        "s" => 1.0,
-        "min" => 60.0,
-        _ => return None,
-    };
-    let number = f64::from_str(text[..unit_start].trim()).ok()?;
-    Duration::try_from_secs_f64(number * seconds).ok()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -166,6 +153,15 @@ mod tests {
         assert_eq!(parameters.duration("wait"), Some(Duration::from_secs(2)));
         assert_eq!(parameters.number("absent"), None);
         assert_eq!(parameters.faults(), []);
+    }
+
+    #[test]
+    fn a_parameter_takes_every_unit_of_durations() {
+        let parameters = Parameters::new().with("wait", "1.5h").with("pause", "1.5d");
+        assert_eq!(parameters.duration("wait"), Some(Duration::from_secs(5400)));
+        assert_eq!(parameters.duration("pause"), None);
+        let messages: Vec<String> = parameters.faults().into_iter().map(|fault| fault.message).collect();
+        assert_eq!(messages, ["parameter `pause` is `1.5d`, expected a time such as `300s` or `100ms`"]);
     }
 
     #[test]

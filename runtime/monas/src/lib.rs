@@ -74,7 +74,7 @@ pub use monas_core::{
     TimingGuard, TimingPolicy, Topics, Totals, TransitionCoverage, ViolationResponse,
 };
 pub use monas_core::{activity, function, module, statechart};
-pub use monas_core::{activity_name, call, call_slot, generated, memory, records, scenario};
+pub use monas_core::{activity_name, call, call_slot, duration, generated, memory, records, scenario};
 
 pub use monas_config as config;
 pub use monas_config::ConfigurationBundle;

@@ -4,9 +4,9 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::{Args, ValueHint};
-use monas::Registry;
+use monas::{Registry, duration};
 use monas_eval::EvaluationSettings;
-use monas_terminal::{CommandFailure, CommandOutput, Exit, Format, duration};
+use monas_terminal::{CommandFailure, CommandOutput, Exit, Format};
 
 /// Arguments of `monas eval`.
 #[derive(Args, Debug)]

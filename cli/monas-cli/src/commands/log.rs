@@ -7,6 +7,7 @@ use std::time::Duration;
 
 use clap::{Args, ValueEnum, ValueHint};
 use clap_complete::engine::{ArgValueCandidates, CompletionCandidate};
+use monas::duration;
 use monas::records::foxglove::Log;
 use monas::records::foxglove::log::Level;
 use monas_tape::Recording;
@@ -15,7 +16,7 @@ use prost::Message;
 #[cfg(unix)]
 use crate::remote::{RunSelector, WatchLimits, hosts, watch};
 use line::LogLine;
-use monas_terminal::{CommandFailure, CommandOutput, Exit, Format, FormatArgument, duration, failed};
+use monas_terminal::{CommandFailure, CommandOutput, Exit, Format, FormatArgument, failed};
 
 /// The topic of log lines.
 const TOPIC: &str = "monas/log";

@@ -6,12 +6,12 @@ use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::time::Duration;
 
 use clap::Args;
-use monas::Timestamp;
+use monas::{Timestamp, duration};
 use monas_gamecontroller::{
     Connection, ControlSender, Endpoint, GameControlData, OperatedGame, OperatorCommand, RETURN_PORT,
     Received, WhistleDelay,
 };
-use monas_terminal::{CommandFailure, CommandOutput, Exit, Format, Interrupt, WallClock, duration};
+use monas_terminal::{CommandFailure, CommandOutput, Exit, Format, Interrupt, WallClock};
 
 use super::run::league::RuleBookArgument;
 

@@ -27,8 +27,9 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::{Args, ValueHint};
+use monas::duration;
 use monas_project::differences;
-use monas_terminal::{CommandFailure, CommandOutput, Exit, FormatArgument, duration, parse_size, report};
+use monas_terminal::{CommandFailure, CommandOutput, Exit, FormatArgument, parse_size, report};
 use yase::Diagnostic;
 
 use crate::input::{ConfigurationKind, DEFAULT_CONFIGURATION, LayerArguments, kind_of, layers};

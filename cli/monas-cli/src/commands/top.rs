@@ -8,6 +8,7 @@ use std::io::{self, IsTerminal};
 use std::time::Duration;
 
 use clap::Args;
+use monas::duration;
 use monas::records::{AgentEntry, Inquiry, Reply};
 use monas_link::control::ControlClient;
 use monas_link::control::messages::TopicEntry;
@@ -18,7 +19,7 @@ use ratatui::crossterm::event::{self, Event, KeyCode, KeyEvent, KeyEventKind, Ke
 use crate::remote::{RunSelector, connection, failure, unexpected_reply};
 use draw::Screen;
 use metrics::Metrics;
-use monas_terminal::{CommandFailure, CommandOutput, Exit, Format, Interrupt, WallClock, duration};
+use monas_terminal::{CommandFailure, CommandOutput, Exit, Format, Interrupt, WallClock};
 
 /// Arguments of `monas top`.
 #[derive(Args, Debug)]

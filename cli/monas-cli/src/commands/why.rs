@@ -3,12 +3,13 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueHint};
+use monas::duration;
 use monas_studio::{
     ChainLink, Explanation, GuardAtom, MessageChain, ReadValue, TapeRun, TransitionExplanation,
     TransitionQuestion, Verdict, WhyQuestion,
 };
 use monas_tape::Recording;
-use monas_terminal::{CommandFailure, CommandOutput, Exit, Format, FormatArgument, duration, failed};
+use monas_terminal::{CommandFailure, CommandOutput, Exit, Format, FormatArgument, failed};
 use serde_json::{Value, json};
 
 use crate::input::recorded_charts;

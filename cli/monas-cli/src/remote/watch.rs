@@ -3,9 +3,10 @@
 use std::time::Duration;
 
 use clap::Args;
+use monas::duration;
 use monas_link::control::WatchStream;
 use monas_link::control::messages::Seen;
-use monas_terminal::{CommandFailure, CommandOutput, Exit, Interrupt, WallClock, duration};
+use monas_terminal::{CommandFailure, CommandOutput, Exit, Interrupt, WallClock};
 
 use super::connection::{self, failure};
 use super::run_selector::RunSelector;

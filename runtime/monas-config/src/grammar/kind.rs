@@ -142,7 +142,7 @@ mod tests {
             (Kind::Flag, &["1", "0", "true", "false", " 1 "][..], &["yes", "2", ""][..]),
             (Kind::whole_in(1, 7), &["1", "7"], &["0", "8", "1.5", "one", ""]),
             (Kind::number_in(0.5, 2.0), &["0.5", "2", "1e0"], &["0.4", "NaN", "inf", "x"]),
-            (tick, &["1ms", "2s", "1.5min"], &["1", "999us", "-1s", "ms"]),
+            (tick, &["1ms", " 2s ", "1.5min", "1.5h"], &["1", "999us", "-1s", "ms", "1e3s"]),
             (Kind::Word(vec!["left", "right"]), &["left"], &["up", "Left"]),
             (Kind::Name, &["robot_2", "a-b"], &["", "a b", "a/b"]),
             (Kind::File, &["a.xml"], &["", " "]),

@@ -5,8 +5,8 @@ use std::fmt::Write;
 use super::super::element::camel_case;
 use super::super::grammar::{AttributeRule, ElementRule, Grammar, Kind};
 
-/// Pattern of a duration.
-pub(crate) const DURATION: &str = "[0-9]+(\\.[0-9]+)?([eE][-+]?[0-9]+)? *(ns|us|ms|s|min)";
+/// Pattern of what [`crate::duration`] takes, without blanks around it.
+pub(crate) const DURATION: &str = "([0-9]+\\.?[0-9]*|\\.[0-9]+) *(ns|us|ms|s|min|h)";
 /// Pattern of a name.
 pub(crate) const NAME: &str = "[A-Za-z0-9_\\-]+";
 

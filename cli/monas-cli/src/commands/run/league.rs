@@ -4,9 +4,9 @@ use std::io;
 use std::time::Duration;
 
 use clap::{Args, ValueEnum};
+use monas::duration;
 use monas_gamecontroller::{ControlReceiver, ControlSender, Endpoint, RETURN_PORT, RuleBook};
 use monas_match::MatchPlan;
-use monas_terminal::duration;
 
 /// The match's end of the league's protocol.
 #[derive(Args, Debug)]

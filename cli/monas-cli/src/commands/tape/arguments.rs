@@ -4,7 +4,8 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::{Args, Subcommand, ValueEnum, ValueHint};
-use monas_terminal::{FormatArgument, duration};
+use monas::duration;
+use monas_terminal::FormatArgument;
 
 #[derive(Subcommand, Debug)]
 pub(crate) enum TapeCommand {

@@ -4,9 +4,10 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::{Args, ValueHint};
+use monas::duration;
 use monas_match::RecordedField;
 use monas_tape::Recording;
-use monas_terminal::{CommandFailure, CommandOutput, Exit, FormatArgument, duration, failed, write_text};
+use monas_terminal::{CommandFailure, CommandOutput, Exit, FormatArgument, failed, write_text};
 
 use crate::input::{ConfigurationKind, LayerArguments, kind_of, layers, recorded_configuration};
 

@@ -6,11 +6,12 @@ use std::time::Duration;
 use aseme_models::convert::Model;
 use aseme_models::iac::{ChartKind, Iac};
 use clap::{Args, ValueHint};
+use monas::duration;
 use monas::records::{Action, Change, Setting};
 use monas_match::{MatchOptions, MatchPlan, MatchSource};
 use monas_studio::{TapeChart, TapeRun};
 use monas_tape::{Recording, Tape};
-use monas_terminal::{CommandFailure, CommandOutput, Exit, Format, FormatArgument, duration, failed, table};
+use monas_terminal::{CommandFailure, CommandOutput, Exit, Format, FormatArgument, failed, table};
 use serde_json::{Value, json};
 use yase::expression::{Expression, parse_transition};
 

@@ -51,6 +51,21 @@ fn a_link_is_read() {
 }
 
 #[test]
+fn durations_have_the_units_of_the_command_line() {
+    let budget = |window: &str| {
+        let budget = format!("<budget packets='12' window='{window}' payload='128'/>");
+        links(&format!("<link name='a'><send topics='test/ball'/>{budget}</link>"), &[])
+    };
+    let (links, diagnostics) = budget("1.5h");
+    assert_eq!(diagnostics, [""; 0]);
+    let windows: Vec<_> = links.iter().map(|link| link.settings.budget.map(|budget| budget.window)).collect();
+    assert_eq!(windows, [Some(monas::duration::parse("90min").unwrap())]);
+    let wrong = "error[E0306]: `window` is `1.5d`, expected a time such as `300s` or `100ms`";
+    let (_, diagnostics) = budget("1.5d");
+    assert!(diagnostics.iter().any(|found| found.contains(wrong)), "{diagnostics:?}");
+}
+
+#[test]
 fn a_link_that_is_not_enabled_is_left_out() {
     let (links, diagnostics) = links("<link enable='0'><send topics='test/*'/></link>", &[]);
     assert_eq!((links.len(), diagnostics), (0, vec![]));

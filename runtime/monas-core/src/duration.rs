@@ -1,4 +1,5 @@
-//! Parses durations: `600s`, `10min`, `500ms`, `1.5h`.
+//! Durations as text, in configurations, parameters and options of commands: `600s`, `10min`,
+//! `500ms`, `1.5h`.
 
 use std::time::Duration;
 
@@ -12,11 +13,18 @@ const UNITS: [(&str, u128); 6] = [
     ("h", 3_600_000_000_000),
 ];
 
-/// Parses a duration, exact to the nanosecond.
+/// Parses a duration: a decimal number and `ns`, `us`, `ms`, `s`, `min` or `h`. The result is exact;
+/// fractions of a nanosecond are rounded.
+///
+/// ```
+/// # use std::time::Duration;
+/// assert_eq!(monas_core::duration::parse("1.5h"), Ok(Duration::from_secs(5400)));
+/// ```
 ///
 /// # Errors
 /// A sentence for the user.
 pub fn parse(text: &str) -> Result<Duration, String> {
+    let text = text.trim();
     let number_ends = text.find(|c: char| !c.is_ascii_digit() && c != '.').unwrap_or(text.len());
     let (number, unit) = text.split_at(number_ends);
     if number.is_empty() {
@@ -41,7 +49,7 @@ fn wrong_unit(text: &str, unit: &str) -> String {
     }
 }
 
-/// `number` times `worth` in integer arithmetic, so that `0.1s` is exactly 100 ms.
+/// `number` times `worth`, to the nearest integer, in integer arithmetic: `0.1s` is exactly 100 ms.
 fn nanoseconds(number: &str, worth: u128) -> Option<u128> {
     let (whole, fraction) = number.split_once('.').unwrap_or((number, ""));
     let wholes = if whole.is_empty() { 0 } else { whole.parse::<u64>().ok()? };
@@ -50,7 +58,7 @@ fn nanoseconds(number: &str, worth: u128) -> Option<u128> {
         return None;
     }
     let scale = 10_u128.checked_pow(u32::try_from(fraction.len()).ok()?)?;
-    Some(u128::from(wholes) * worth + u128::from(parts) * worth / scale)
+    Some(u128::from(wholes) * worth + (u128::from(parts) * worth + scale / 2) / scale)
 }
 
 #[cfg(test)]
@@ -68,6 +76,11 @@ mod tests {
             ("2.h", 7_200_000_000_000),
             ("0s", 0),
             ("3ns", 3),
+            ("1.4ns", 1),
+            ("0.0000000016s", 2),
+            (" 12ms ", 12_000_000),
+            ("1.5min", 90_000_000_000),
+            ("9007199254740993ns", 9_007_199_254_740_993),
             ("18446744073.709551615s", u64::MAX),
         ];
         for (text, nanoseconds) in cases {
