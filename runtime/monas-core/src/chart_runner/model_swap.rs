@@ -17,7 +17,8 @@ pub struct ModelSwap {
     pub bound: BoundChart,
     /// Pairs of paths: a removed state, and the state of the new chart that continues it.
     pub states: Vec<(String, String)>,
-    /// Whether active states without a counterpart may be left.
+    /// Whether history, timers and events that the new chart does not have may be lost. An active
+    /// state without a counterpart is always a reason against the swap.
     pub accepts_losses: bool,
     /// Whether it is only judged: nothing changes then.
     pub is_dry_run: bool,
