@@ -209,9 +209,9 @@ pub struct LeakDetector {
     /// Calls of this window, and the minimum held after one of them.
     calls: u32,
     floor: u64,
-    /// Minimum of the previous window, number of consecutive rising windows, and the minimum before
-    /// them.
-    last: u64,
+    /// Minimum of the previous window, if there was one, number of consecutive rising windows, and
+    /// the minimum before them.
+    last: Option<u64>,
     rises: u32,
     from: u64,
     is_said: bool,
@@ -228,12 +228,13 @@ impl LeakDetector {
             return false;
         }
         self.calls = 0;
-        if self.floor > self.last {
+        // What the first window holds is held from the beginning, and no growth.
+        if self.last.is_some_and(|last| self.floor > last) {
             self.rises += 1;
         } else {
             (self.rises, self.from) = (0, self.floor);
         }
-        self.last = self.floor;
+        self.last = Some(self.floor);
         let is_new = self.grows() && !self.is_said;
         self.is_said |= is_new;
         is_new
@@ -241,7 +242,7 @@ impl LeakDetector {
 
     /// Whether growth was detected.
     pub fn grows(&self) -> bool {
-        self.rises >= RISES && self.last.saturating_sub(self.from) >= LEAST
+        self.rises >= RISES && self.last.is_some_and(|last| last.saturating_sub(self.from) >= LEAST)
     }
 
     /// Bytes held; none without the counting allocator.
@@ -275,6 +276,13 @@ mod tests {
             (false, 1),
             "it has grown, and does not any more"
         );
+    }
+
+    #[test]
+    fn memory_held_from_the_beginning_is_no_growth() {
+        assert_eq!(growing(|call| 8192 + 8 * call, 300), (false, 0), "it grew by less than 4 KiB");
+        assert_eq!(growing(|_| 8192, 1000), (false, 0));
+        assert_eq!(growing(|call| 8192 + 100 * call, 1000), (true, 1));
     }
 
     #[test]
