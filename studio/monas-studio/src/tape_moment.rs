@@ -1,10 +1,12 @@
 //! A run at one moment of its tape.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use serde_json::{Value, json};
 
 use crate::chart_view::seconds;
 use crate::run_view::{CHART, CYCLE, RunView, ViewedMessage};
-use crate::tape_run::TapeRun;
+use crate::tape_run::{TapeChannel, TapeRun};
 
 /// The state of a run after some of the messages of its tape.
 #[derive(Clone, Default, Debug)]
@@ -57,23 +59,24 @@ impl TapeMoment {
         fitting.map(|(_, (count, _))| count).sum()
     }
 
-    /// Brings the tables of agents and topics up to date.
+    /// Brings the tables of agents and topics up to date. Each agent and each topic of a host is one
+    /// row, whatever number of publishers and channels it has.
     pub(crate) fn set_tables(&mut self, tape: &TapeRun) {
-        let now = seconds(self.view.now.saturating_sub(tape.begin()));
-        let mut topics = Vec::new();
+        let mut topics: BTreeMap<(&str, &str), TopicRow<'_>> = BTreeMap::new();
+        let mut known_agents = BTreeSet::new();
         let mut agents = Vec::new();
         for (channel, &(count, last)) in tape.channels().iter().zip(&self.channels) {
-            let time = tape.entry(last).filter(|_| count > 0).map(|(entry, _)| seconds(entry.time));
-            let rate = (now > 0.0).then(|| count as f64 / now);
-            topics.push(json!({"host": channel.host, "path": channel.topic, "kind": channel.kind,
-                "type": channel.message_type, "count": count, "rate": rate, "publisher": channel.publisher, "t": time}));
-            if channel.topic == CYCLE {
+            let last = Some(last).filter(|_| count > 0);
+            let row = TopicRow { count, last, channel };
+            let key = (channel.host.as_str(), channel.topic.as_str());
+            topics.entry(key).and_modify(|known| known.add(&row)).or_insert(row);
+            if channel.topic == CYCLE && known_agents.insert((&channel.host, &channel.publisher)) {
                 agents.push(self.agent(tape, &channel.host, &channel.publisher));
             }
         }
-        topics.dedup_by(|a, b| a["host"] == b["host"] && a["path"] == b["path"]);
-        agents.dedup();
-        self.view.set_table_objects(Value::Array(agents), Value::Array(topics));
+        let now = seconds(self.view.now.saturating_sub(tape.begin()));
+        let topics = topics.values().map(|row| row.object(tape, now)).collect();
+        self.view.set_table_objects(Value::Array(agents), topics);
     }
 
     fn agent(&self, tape: &TapeRun, host: &str, name: &str) -> Value {
@@ -86,5 +89,33 @@ impl TapeMoment {
         };
         json!({"host": host, "name": name, "state": "recorded", "reason": "", "frequency": 0.0, "cycles": count(CYCLE),
             "overruns": 0, "missed": 0, "steps": count(CHART), "time": null, "charts": [], "activities": []})
+    }
+}
+
+/// A topic of a host in the table of topics.
+struct TopicRow<'a> {
+    count: u64,
+    /// Index of the newest message, if there was one.
+    last: Option<usize>,
+    /// The channel of the newest message.
+    channel: &'a TapeChannel,
+}
+
+impl<'a> TopicRow<'a> {
+    /// Adds another channel of the topic.
+    fn add(&mut self, other: &TopicRow<'a>) {
+        self.count += other.count;
+        if other.last > self.last {
+            (self.last, self.channel) = (other.last, other.channel);
+        }
+    }
+
+    /// The row as the page reads it; `now` is in seconds since the begin of the tape.
+    fn object(&self, tape: &TapeRun, now: f64) -> Value {
+        let TopicRow { count, last, channel } = self;
+        let time = last.and_then(|last| tape.entry(last)).map(|(entry, _)| seconds(entry.time));
+        let rate = (now > 0.0).then(|| *count as f64 / now);
+        json!({"host": channel.host, "path": channel.topic, "kind": channel.kind, "type": channel.message_type,
+            "count": count, "rate": rate, "publisher": channel.publisher, "t": time})
     }
 }

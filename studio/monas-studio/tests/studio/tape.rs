@@ -223,6 +223,48 @@ fn a_tape_is_played_to_its_end_with_its_topics_and_agents() {
 }
 
 #[test]
+fn a_topic_of_several_publishers_is_one_row_with_all_their_messages() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("agents.mcap");
+    let tape = Tape::create(&path).unwrap();
+    let hub = Hub::with_linked_topics("robot").unwrap();
+    hub.observe(Box::new(tape.clone()));
+    let mut vision = hub.publisher(records::CYCLE, "Vision").unwrap();
+    let mut notes = hub.publisher(NOTE, "tester").unwrap();
+    let mut motion = hub.publisher(records::CYCLE, "Motion").unwrap();
+    let second = |number: u64| Timestamp::from_nanos(number * 1_000_000_000);
+    for time in 1..=3 {
+        vision.publish(records::Cycle::default(), second(time));
+        notes.publish(Log::default(), second(time));
+    }
+    motion.publish(records::Cycle::default(), second(4));
+    motion.publish(records::Cycle::default(), second(5));
+    tape.finish().unwrap();
+    let run = TapeRun::new("agents", Recording::open(&path).unwrap(), &[], None).unwrap();
+    let listen = Some("127.0.0.1:0".parse().unwrap());
+    let studio = Studio::of_tape(run, StudioSettings { listen, ..StudioSettings::default() }).unwrap();
+    let mut viewer = Viewer::open(&studio).unwrap();
+    viewer.send(json!({"type": "seek", "seconds": 5.0}));
+    let (mut topics, mut agents) = (Value::Null, Value::Null);
+    viewer.wait(|message| {
+        for (table, name) in [(&mut topics, "topics"), (&mut agents, "agents")] {
+            if let Some(new) = message.get(name) {
+                *table = new.clone();
+            }
+        }
+        let is_at_end = topics.as_array()?.iter().any(|topic| topic["t"] == 5.0);
+        is_at_end.then_some(())
+    });
+    let cycles: Vec<&Value> =
+        topics.as_array().unwrap().iter().filter(|topic| topic["path"] == "monas/cycle").collect();
+    let [row] = cycles.as_slice() else { panic!("{cycles:?}") };
+    assert_eq!((&row["count"], &row["publisher"], &row["t"]), (&json!(5), &json!("Motion"), &json!(5.0)));
+    let agents = agents.as_array().unwrap().iter();
+    let agents: Vec<_> = agents.map(|agent| (agent["name"].as_str(), agent["cycles"].as_u64())).collect();
+    assert_eq!(agents, [(Some("Vision"), Some(3)), (Some("Motion"), Some(2))]);
+}
+
+#[test]
 fn lasting_events_are_marked_where_they_begin() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("events.mcap");
