@@ -266,6 +266,6 @@ impl fmt::Debug for TypedValue {
 
 impl fmt::Debug for FieldSetter {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("Change")
+        f.write_str("FieldSetter")
     }
 }

@@ -133,6 +133,6 @@ impl HubBridge {
 
 impl std::fmt::Debug for HubBridge {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "Bridge({:?}, {:?})", self.hub, self.node)
+        write!(f, "HubBridge({:?}, {:?})", self.hub, self.node)
     }
 }

@@ -116,7 +116,7 @@ impl PacketInbox {
 
 impl std::fmt::Debug for PacketInbox {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Inbox").field("content", &self.content).finish_non_exhaustive()
+        f.debug_struct("PacketInbox").field("content", &self.content).finish_non_exhaustive()
     }
 }
 

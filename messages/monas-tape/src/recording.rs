@@ -397,6 +397,6 @@ impl Channel {
 
 impl fmt::Debug for RecordingItems<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "Contents({} bytes left)", self.rest.0.len())
+        write!(f, "RecordingItems({} bytes left)", self.rest.0.len())
     }
 }

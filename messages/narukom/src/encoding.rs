@@ -43,7 +43,7 @@ impl EncodingSlot {
 
 impl fmt::Debug for EncodingSlot {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "Encoding({:?} bytes)", self.bytes.get().map(Vec::len))
+        write!(f, "EncodingSlot({:?} bytes)", self.bytes.get().map(Vec::len))
     }
 }
 

@@ -152,6 +152,11 @@ impl ScenarioRunner {
 
 impl fmt::Debug for ScenarioRunner {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "Player({} topics, {} functions)", self.vocabulary.topics.len(), self.functions.len())
+        write!(
+            f,
+            "ScenarioRunner({} topics, {} functions)",
+            self.vocabulary.topics.len(),
+            self.functions.len()
+        )
     }
 }

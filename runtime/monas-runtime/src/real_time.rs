@@ -242,6 +242,6 @@ impl Drop for RealTimeRun {
 
 impl fmt::Debug for RealTimeRun {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Running").field("stopper", &self.stopper).finish_non_exhaustive()
+        f.debug_struct("RealTimeRun").field("stopper", &self.stopper).finish_non_exhaustive()
     }
 }

@@ -334,7 +334,7 @@ impl monas_link::control::ControlTarget for RunHandle {
 
 impl std::fmt::Debug for RunHandle {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "Overview({} hubs at {})", self.hubs.len(), self.now())
+        write!(f, "RunHandle({} hubs at {})", self.hubs.len(), self.now())
     }
 }
 

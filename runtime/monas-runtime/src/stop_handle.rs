@@ -24,7 +24,7 @@ type StopCallback = Box<dyn Fn() + Send + Sync>;
 
 impl std::fmt::Debug for StopState {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Shared").field("stopped", &self.stopped).finish_non_exhaustive()
+        f.debug_struct("StopState").field("stopped", &self.stopped).finish_non_exhaustive()
     }
 }
 
