@@ -110,12 +110,12 @@ impl ThreadShared {
         &self,
         now: Timestamp,
         always: bool,
-        look: impl FnOnce() -> (AgentStatistics, ChartStatus),
+        current: impl FnOnce() -> (AgentStatistics, ChartStatus),
     ) {
-        let Ok(mut board) = self.status.try_lock() else { return };
-        if always || now >= board.shown + SHOW {
-            (board.statistics, board.chart) = look();
-            board.shown = now;
+        let Ok(mut status) = self.status.try_lock() else { return };
+        if always || now >= status.shown + SHOW {
+            (status.statistics, status.chart) = current();
+            status.shown = now;
         }
     }
 
@@ -124,19 +124,19 @@ impl ThreadShared {
         self.is_over.store(false, Ordering::SeqCst);
     }
 
-    fn enqueue(&self, orders: AgentUpdate) -> (u64, Receiver<UpdateResult>) {
+    fn enqueue(&self, update: AgentUpdate) -> (u64, Receiver<UpdateResult>) {
         let (answer, answered) = sync_channel(1);
         let number = self.batches.fetch_add(1, Ordering::Relaxed);
-        locked(&self.pending).push_back(PendingCommands { number, update: orders, answer });
+        locked(&self.pending).push_back(PendingCommands { number, update, answer });
         self.mailbox.wake();
         (number, answered)
     }
 
     /// Withdraws commands; returns false if the thread has begun to apply them.
     fn withdraw(&self, number: u64) -> bool {
-        let mut orders = locked(&self.pending);
-        let place = orders.iter().position(|batch| batch.number == number);
-        place.is_some_and(|place| orders.remove(place).is_some())
+        let mut pending = locked(&self.pending);
+        let place = pending.iter().position(|batch| batch.number == number);
+        place.is_some_and(|place| pending.remove(place).is_some())
     }
 }
 
@@ -333,9 +333,9 @@ impl AgentShared {
         let SharedThreads { list, charts } = locked(&self.parts).clone();
         let mut all = AgentStatistics::default();
         for part in list.iter().chain(&charts) {
-            let board = locked(&part.status).clone();
-            (all.host, all.agent) = (board.statistics.host.clone(), board.statistics.agent.clone());
-            all.add(board.statistics);
+            let status = locked(&part.status).clone();
+            (all.host, all.agent) = (status.statistics.host.clone(), status.statistics.agent.clone());
+            all.add(status.statistics);
         }
         all.stopped = self.stop_reason();
         (all, charts.iter().map(|part| locked(&part.status).chart.clone()).collect())
@@ -361,14 +361,14 @@ impl AgentShared {
     ///
     /// # Errors
     /// The reasons against it. Nothing has changed then.
-    pub(crate) fn apply(&self, orders: AgentUpdate, patience: Duration) -> UpdateResult {
+    pub(crate) fn apply(&self, update: AgentUpdate, patience: Duration) -> UpdateResult {
         let SharedThreads { list, charts } = locked(&self.parts).clone();
-        let shares = orders.shares(list.is_some(), charts.len());
+        let shares = update.shares(list.is_some(), charts.len());
         let given: Vec<_> = shares
             .into_iter()
-            .filter_map(|ThreadUpdate { place, update: orders, is_own }| {
+            .filter_map(|ThreadUpdate { place, update, is_own }| {
                 let part = place.map_or(list.as_ref(), |place| charts.get(place))?;
-                let (number, answered) = part.enqueue(orders);
+                let (number, answered) = part.enqueue(update);
                 Some((part, number, answered, is_own))
             })
             .collect();

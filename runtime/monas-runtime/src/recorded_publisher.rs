@@ -15,6 +15,6 @@ pub struct RecordedPublisher {
 }
 
 /// The names of the publishers of a host.
-pub(crate) fn names_on(company: &[RecordedPublisher], host: &str) -> impl Iterator<Item = String> {
-    company.iter().filter(move |one| one.host == host).map(|one| one.publisher.clone())
+pub(crate) fn names_on(publishers: &[RecordedPublisher], host: &str) -> impl Iterator<Item = String> {
+    publishers.iter().filter(move |one| one.host == host).map(|one| one.publisher.clone())
 }

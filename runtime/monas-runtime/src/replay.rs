@@ -117,7 +117,7 @@ pub struct ReplayChannel(usize);
 /// and so not in a replay. The same holds for other inputs of an activity: a clock, a device or
 /// another thread. They appear as differences.
 pub struct Replay {
-    course: ReplayMode,
+    mode: ReplayMode,
     /// The time of the most recent message.
     now: Timestamp,
 }
@@ -136,13 +136,13 @@ impl Replay {
         publishers: &[RecordedPublisher],
     ) -> Result<Replay, Error> {
         let replay = SimulatedReplay::new(config, seed, publishers)?;
-        Ok(Replay { course: ReplayMode::Simulated(replay), now: Timestamp::ZERO })
+        Ok(Replay { mode: ReplayMode::Simulated(replay), now: Timestamp::ZERO })
     }
 
     /// A replay of a recording of real time.
     pub(crate) fn real_time(config: RunConfig, publishers: &[RecordedPublisher]) -> Result<Replay, Error> {
         let replay = RealTimeReplay::new(config, publishers)?;
-        Ok(Replay { course: ReplayMode::RealTime(replay), now: Timestamp::ZERO })
+        Ok(Replay { mode: ReplayMode::RealTime(replay), now: Timestamp::ZERO })
     }
 
     /// Registers the messages of a publisher on a topic.
@@ -150,9 +150,9 @@ impl Replay {
     /// # Errors
     /// A message of another host does not name its receiving host, or there are too many hosts.
     pub fn input(&mut self, recorded: RecordedStream<'_>) -> Result<ReplayChannel, Error> {
-        let number = match &mut self.course {
-            ReplayMode::Simulated(course) => course.input(recorded),
-            ReplayMode::RealTime(course) => course.input(recorded),
+        let number = match &mut self.mode {
+            ReplayMode::Simulated(replay) => replay.input(recorded),
+            ReplayMode::RealTime(replay) => replay.input(recorded),
         };
         number.map(ReplayChannel)
     }
@@ -171,9 +171,9 @@ impl Replay {
     ) -> Result<(), Error> {
         self.now = message.received;
         let _time = SimulatedTimeGuard::begin(self.now);
-        match &mut self.course {
-            ReplayMode::Simulated(course) => course.feed(input.0, message, on_difference),
-            ReplayMode::RealTime(course) => course.feed(input.0, message, on_difference),
+        match &mut self.mode {
+            ReplayMode::Simulated(replay) => replay.feed(input.0, message, on_difference),
+            ReplayMode::RealTime(replay) => replay.feed(input.0, message, on_difference),
         }
     }
 
@@ -182,8 +182,8 @@ impl Replay {
     pub fn end(&mut self, moment: Timestamp, on_difference: &mut dyn FnMut(ReplayDifference)) {
         self.now = moment;
         let _time = SimulatedTimeGuard::begin(moment);
-        match &mut self.course {
-            ReplayMode::Simulated(course) => course.end(moment, on_difference),
+        match &mut self.mode {
+            ReplayMode::Simulated(replay) => replay.end(moment, on_difference),
             // The recording contains how each agent stopped.
             ReplayMode::RealTime(_) => {}
         }
@@ -201,18 +201,18 @@ impl Replay {
         on_difference: &mut dyn FnMut(ReplayDifference),
     ) -> Result<Vec<ComparisonCounts>, Error> {
         let _time = SimulatedTimeGuard::begin(self.now);
-        match self.course {
-            ReplayMode::Simulated(course) => course.finish(is_whole, on_difference),
-            ReplayMode::RealTime(course) => course.finish(is_whole, on_difference),
+        match self.mode {
+            ReplayMode::Simulated(replay) => replay.finish(is_whole, on_difference),
+            ReplayMode::RealTime(replay) => replay.finish(is_whole, on_difference),
         }
     }
 }
 
 impl std::fmt::Debug for Replay {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let hosts = match &self.course {
-            ReplayMode::Simulated(course) => course.hosts(),
-            ReplayMode::RealTime(course) => course.hosts(),
+        let hosts = match &self.mode {
+            ReplayMode::Simulated(replay) => replay.hosts(),
+            ReplayMode::RealTime(replay) => replay.hosts(),
         };
         f.debug_struct("Replay").field("hosts", &hosts).finish_non_exhaustive()
     }

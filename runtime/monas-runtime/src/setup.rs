@@ -55,8 +55,7 @@ pub(crate) struct WorldDriver {
 impl PreparedRun {
     /// Sorts hosts by team, number and name, agents by name, and binds all charts.
     pub(crate) fn new(config: RunConfig, seed: u64) -> Result<PreparedRun, Error> {
-        let RunConfig { registry, hosts: mut configs, world, observers, listeners, publishers: company } =
-            config;
+        let RunConfig { registry, hosts: mut configs, world, observers, listeners, publishers } = config;
         configs.sort_by(|a, b| (a.team, a.number, &a.name).cmp(&(b.team, b.number, &b.name)));
         let names = configs.iter().map(|host| host.name.as_str());
         distinct("hosts", names.chain(world.iter().map(|world| world.name())))?;
@@ -65,7 +64,7 @@ impl PreparedRun {
             listeners: ListenerSet::new(listeners),
             observers: SharedObservers::new(observers),
             seed,
-            publishers: company,
+            publishers,
         };
         let world = world.map(|world| factory.environment(world)).transpose()?;
         let binder = Binder::new(&factory.registry)?;

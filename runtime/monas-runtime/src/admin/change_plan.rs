@@ -51,11 +51,11 @@ impl ChangePlan {
     /// The plan of a change.
     pub(crate) fn of(
         change: &Change,
-        roster: &HostAdmin,
-        staff: &dyn AgentControl,
+        host: &HostAdmin,
+        control: &dyn AgentControl,
         now: Timestamp,
     ) -> Result<ChangePlan, ChangeRefusal> {
-        let context = PlanContext { change, host: roster, control: staff, now };
+        let context = PlanContext { change, host, control, now };
         match change.action() {
             action if change.dry_run && action != Action::SwapModel => Err(refusal_with(
                 "E0352",
@@ -98,12 +98,11 @@ impl ChangePlan {
     pub(crate) fn of_return(
         change: &Change,
         gone: &[String],
-        roster: &HostAdmin,
-        staff: &dyn AgentControl,
+        host: &HostAdmin,
+        control: &dyn AgentControl,
         now: Timestamp,
     ) -> Result<ChangePlan, ChangeRefusal> {
-        PlanContext { change, host: roster, control: staff, now }
-            .add_agents(|name| gone.iter().any(|gone| gone == name))
+        PlanContext { change, host, control, now }.add_agents(|name| gone.iter().any(|gone| gone == name))
     }
 }
 

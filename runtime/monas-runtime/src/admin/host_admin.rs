@@ -70,16 +70,16 @@ impl HostAdmin {
     pub(crate) fn submit_change(
         &mut self,
         change: Change,
-        staff: &mut dyn AgentControl,
+        control: &mut dyn AgentControl,
         now: Timestamp,
     ) -> Changed {
         if change.dry_run {
-            self.apply_requests(staff, now);
-            return self.apply_change(&change, None, staff, now);
+            self.apply_requests(control, now);
+            return self.apply_change(&change, None, control, now);
         }
         self.external_changes.publish(change.clone(), now);
         let mut own = None;
-        self.apply_all(staff, now, &mut |asked, changed| {
+        self.apply_all(control, now, &mut |asked, changed| {
             if *asked == change {
                 own = Some(changed.clone());
             }
@@ -88,19 +88,19 @@ impl HostAdmin {
     }
 
     /// Applies the published changes in order.
-    pub(crate) fn apply_requests(&mut self, staff: &mut dyn AgentControl, now: Timestamp) {
-        self.apply_all(staff, now, &mut |_, _| {});
+    pub(crate) fn apply_requests(&mut self, control: &mut dyn AgentControl, now: Timestamp) {
+        self.apply_all(control, now, &mut |_, _| {});
     }
 
     fn apply_all(
         &mut self,
-        staff: &mut dyn AgentControl,
+        control: &mut dyn AgentControl,
         now: Timestamp,
         on_change: &mut dyn FnMut(&Change, &Changed),
     ) {
         while let Some(sample) = self.requests.next_sample() {
             let Some(change) = sample.downcast::<Change>() else { continue };
-            let changed = self.apply_change(change.message, Some(&sample.header), staff, now);
+            let changed = self.apply_change(change.message, Some(&sample.header), control, now);
             on_change(change.message, &changed);
             self.replies.publish(changed, now);
         }
@@ -125,10 +125,10 @@ impl HostAdmin {
     pub(crate) fn replay_change(
         &mut self,
         change: &Change,
-        staff: &mut dyn AgentControl,
+        control: &mut dyn AgentControl,
         now: Timestamp,
     ) -> Changed {
-        self.apply_change(change, None, staff, now)
+        self.apply_change(change, None, control, now)
     }
 
     /// In a replay: restarts those agents of an adding change that had been removed. The others are
@@ -137,11 +137,11 @@ impl HostAdmin {
         &mut self,
         change: &Change,
         gone: &[String],
-        staff: &mut dyn AgentControl,
+        control: &mut dyn AgentControl,
         now: Timestamp,
     ) -> Changed {
-        let plan = ChangePlan::of_return(change, gone, self, staff, now);
-        self.execute_plan(change, plan, None, staff)
+        let plan = ChangePlan::of_return(change, gone, self, control, now);
+        self.execute_plan(change, plan, None, control)
     }
 
     /// In a replay: removes the profile of an agent that has been removed.
@@ -163,7 +163,7 @@ impl HostAdmin {
         &mut self,
         change: &Change,
         header: Option<&Header>,
-        staff: &mut dyn AgentControl,
+        control: &mut dyn AgentControl,
         now: Timestamp,
     ) -> Changed {
         let plan = match change.dry_run && header.is_some() {
@@ -172,9 +172,9 @@ impl HostAdmin {
                 "a message cannot ask for a dry run",
                 "ask on the control socket: `monas agent swap --dry-run`",
             )),
-            false => ChangePlan::of(change, self, staff, now),
+            false => ChangePlan::of(change, self, control, now),
         };
-        self.execute_plan(change, plan, header, staff)
+        self.execute_plan(change, plan, header, control)
     }
 
     /// Executes a plan and publishes the reply.
@@ -183,10 +183,10 @@ impl HostAdmin {
         change: &Change,
         plan: Result<ChangePlan, ChangeRefusal>,
         header: Option<&Header>,
-        staff: &mut dyn AgentControl,
+        control: &mut dyn AgentControl,
     ) -> Changed {
         let asked = header.and_then(|header| self.change_ref(header));
-        let made = plan.and_then(|plan| self.carry_out(plan, change.dry_run, asked, staff));
+        let made = plan.and_then(|plan| self.carry_out(plan, change.dry_run, asked, control));
         let (done, findings) = match made {
             Ok(said) => (true, said),
             Err(reasons) => (false, reasons.iter().map(finding).collect()),
@@ -204,7 +204,7 @@ impl HostAdmin {
             action: change.action,
             agent: change.agent.clone(),
             done,
-            cycle: staff.cycles(&change.agent),
+            cycle: control.cycles(&change.agent),
             findings,
         }
     }
@@ -222,14 +222,14 @@ impl HostAdmin {
         plan: ChangePlan,
         is_dry_run: bool,
         asked: Option<ChangeRef>,
-        staff: &mut dyn AgentControl,
+        control: &mut dyn AgentControl,
     ) -> Result<Vec<Finding>, ChangeRefusal> {
         let ChangePlan { warnings, step } = plan;
         let mut said: Vec<Finding> = warnings.iter().map(finding).collect();
         match step {
-            PlanStep::Update(profile, orders) => {
-                let remarks = staff
-                    .apply(&profile.name, AgentUpdate { change: asked, ..*orders })
+            PlanStep::Update(profile, update) => {
+                let remarks = control
+                    .apply(&profile.name, AgentUpdate { change: asked, ..*update })
                     .map_err(refusal_from_reasons)?;
                 said.extend(remarks.into_iter().map(note));
                 if !is_dry_run {
@@ -238,16 +238,16 @@ impl HostAdmin {
             }
             PlanStep::Launch(agents) => {
                 for (profile, member) in agents {
-                    staff.launch(member, asked.as_ref()).map_err(|reason| refusal("E0357", reason))?;
+                    control.launch(member, asked.as_ref()).map_err(|reason| refusal("E0357", reason))?;
                     let place = self.profiles.partition_point(|known| known.name < profile.name);
                     self.profiles.insert(place, profile);
                 }
             }
             PlanStep::UpdateModules(equipment) => {
-                said.extend(self.update_modules(*equipment, asked.as_ref(), staff)?);
+                said.extend(self.update_modules(*equipment, asked.as_ref(), control)?);
             }
             PlanStep::Remove(name) => {
-                staff.remove(&name).map_err(|reason| refusal("E0357", reason))?;
+                control.remove(&name).map_err(|reason| refusal("E0357", reason))?;
                 self.remove_profile(&name);
             }
         }
@@ -261,14 +261,14 @@ impl HostAdmin {
         &mut self,
         equipment: ModuleUpdate,
         asked: Option<&ChangeRef>,
-        staff: &mut dyn AgentControl,
+        control: &mut dyn AgentControl,
     ) -> Result<Vec<Finding>, ChangeRefusal> {
         let ModuleUpdate { registry, updates } = equipment;
         let mut said = Vec::new();
         let mut is_begun = false;
-        for (profile, orders) in updates {
+        for (profile, update) in updates {
             let name = profile.name.clone();
-            match staff.apply(&name, AgentUpdate { change: asked.cloned(), ..orders }) {
+            match control.apply(&name, AgentUpdate { change: asked.cloned(), ..update }) {
                 Ok(remarks) => {
                     is_begun = true;
                     said.extend(remarks.into_iter().map(note));
@@ -293,15 +293,19 @@ impl HostAdmin {
     }
 
     /// The present entries of all agents.
-    pub(crate) fn entries(&self, staff: &dyn AgentControl) -> Vec<AgentEntry> {
-        self.profiles.iter().map(|profile| staff.entry(profile)).collect()
+    pub(crate) fn entries(&self, control: &dyn AgentControl) -> Vec<AgentEntry> {
+        self.profiles.iter().map(|profile| control.entry(profile)).collect()
     }
 
     /// The state of a chart.
     ///
     /// # Errors
     /// There is no such agent or chart, or it does not reply.
-    pub(crate) fn chart(&self, choice: &ChartChoice, staff: &dyn AgentControl) -> Result<ChartState, String> {
+    pub(crate) fn chart(
+        &self,
+        choice: &ChartChoice,
+        control: &dyn AgentControl,
+    ) -> Result<ChartState, String> {
         let ChartChoice { agent, chart, values } = choice;
         let profile = self.profiles.iter().find(|profile| profile.name == *agent);
         let profile = profile.ok_or_else(|| format!("no agent is named `{agent}`"))?;
@@ -314,13 +318,13 @@ impl HostAdmin {
         };
         let place = settings::chart(profile, chart).map_err(said)?;
         let aspect = if *values { ChartAspect::Values } else { ChartAspect::State };
-        let mut documents = staff.inspect_chart(agent, place, aspect)?.into_iter();
+        let mut documents = control.inspect_chart(agent, place, aspect)?.into_iter();
         let mut document = || documents.next().unwrap_or_default();
         let mut state = ChartState {
             host: self.hub().host().into(),
             agent: agent.clone(),
             model: profile.charts[place].model.clone(),
-            state: staff.chart_status(agent, place).word().into(),
+            state: control.chart_status(agent, place).word().into(),
             ..ChartState::default()
         };
         match aspect {

@@ -188,18 +188,18 @@ fn is_activity_of(module: &Module, name: &str) -> bool {
 }
 
 /// The entry of a module in a status reply.
-pub(crate) fn entry(module: &Module, roster: &HostAdmin) -> ModuleEntry {
+pub(crate) fn entry(module: &Module, admin: &HostAdmin) -> ModuleEntry {
     let uses = |profile: &&AgentProfile| {
         !places(profile, module).is_empty()
             || profile.charts.iter().any(|chart| !states(chart, profile, module).is_empty())
     };
     ModuleEntry {
-        host: roster.hub().host().into(),
+        host: admin.hub().host().into(),
         name: module.name().into(),
         file: module.file().display().to_string(),
         digest: module.digest().into(),
         package: module.note().field("package").unwrap_or_default().into(),
         activities: module.activity_names().map(str::to_owned).collect(),
-        agents: roster.profiles.iter().filter(uses).map(|profile| profile.name.clone()).collect(),
+        agents: admin.profiles.iter().filter(uses).map(|profile| profile.name.clone()).collect(),
     }
 }

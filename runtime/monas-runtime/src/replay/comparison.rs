@@ -93,7 +93,7 @@ impl MomentComparison {
         &mut self,
         hub: &Hub,
         time: Timestamp,
-        ledger: &mut ComparisonReport,
+        report: &mut ComparisonReport,
         on_difference: &mut dyn FnMut(ReplayDifference),
     ) {
         if self.recorded.is_empty() && self.produced.is_empty() {
@@ -105,11 +105,11 @@ impl MomentComparison {
         let recorded = std::mem::take(&mut self.recorded);
         let mut differences = 0;
         for then in &recorded {
-            differences += u64::from(!self.pair(then, time, ledger, on_difference));
+            differences += u64::from(!self.pair(then, time, report, on_difference));
         }
-        differences += self.report_unrecorded(hub, time, ledger, on_difference);
+        differences += self.report_unrecorded(hub, time, report, on_difference);
         if differences == 0 && !is_in_order {
-            self.report_order(&recorded, time, ledger, on_difference);
+            self.report_order(&recorded, time, report, on_difference);
         }
         self.produced.clear();
     }
@@ -120,11 +120,11 @@ impl MomentComparison {
         &mut self,
         then: &RecordedOutput,
         time: Timestamp,
-        ledger: &mut ComparisonReport,
+        report: &mut ComparisonReport,
         on_difference: &mut dyn FnMut(ReplayDifference),
     ) -> bool {
         let partner = self.produced.iter().position(|now| !now.is_paired && Some(now.topic) == then.topic);
-        let tally = &mut ledger.lines[then.line];
+        let tally = &mut report.lines[then.line];
         let Some(place) = partner else {
             tally.only_recorded += 1;
             on_difference(self.difference(&tally.topic, then.cycle, time, Some(&then.bytes), None));
@@ -146,12 +146,12 @@ impl MomentComparison {
         &self,
         recorded: &[RecordedOutput],
         time: Timestamp,
-        ledger: &mut ComparisonReport,
+        report: &mut ComparisonReport,
         on_difference: &mut dyn FnMut(ReplayDifference),
     ) {
         let pairs = recorded.iter().zip(&self.produced);
         if let Some((then, _)) = pairs.into_iter().find(|(then, now)| then.topic != Some(now.topic)) {
-            let tally = &mut ledger.lines[then.line];
+            let tally = &mut report.lines[then.line];
             tally.different += 1;
             on_difference(self.difference(
                 &tally.topic,
@@ -167,14 +167,14 @@ impl MomentComparison {
         &self,
         hub: &Hub,
         time: Timestamp,
-        ledger: &mut ComparisonReport,
+        report: &mut ComparisonReport,
         on_difference: &mut dyn FnMut(ReplayDifference),
     ) -> u64 {
         let mut count = 0;
         for now in self.produced.iter().filter(|now| !now.is_paired) {
             let topic = hub.declaration(now.topic).map_or("", |topic| topic.path());
-            let line = ledger.line(&self.host, &self.agent, topic);
-            ledger.lines[line].only_replayed += 1;
+            let line = report.line(&self.host, &self.agent, topic);
+            report.lines[line].only_replayed += 1;
             on_difference(self.difference(topic, self.cycles.max(1), time, None, Some(&now.bytes)));
             count += 1;
         }

@@ -102,7 +102,7 @@ struct OwnMessage {
 }
 
 impl RealTimeReplay {
-    pub(crate) fn new(config: RunConfig, company: &[RecordedPublisher]) -> Result<RealTimeReplay, Error> {
+    pub(crate) fn new(config: RunConfig, publishers: &[RecordedPublisher]) -> Result<RealTimeReplay, Error> {
         let RunConfig { registry, hosts, .. } = config;
         let mut parts = Vec::new();
         for HostConfig { name, team, number, agents, links, modules, .. } in hosts {
@@ -110,7 +110,8 @@ impl RealTimeReplay {
                 let (profile, charts) = (AgentProfile::of(&agent), agent.charts.len());
                 let has_list = !agent.activities.is_empty();
                 let is_it = |one: &&RecordedPublisher| one.host == name && one.publisher == profile.name;
-                let begins_list = company.iter().find(is_it).is_some_and(|one| one.last_part >= part(charts));
+                let begins_list =
+                    publishers.iter().find(is_it).is_some_and(|one| one.last_part >= part(charts));
                 let (threads, lists) = (agent.split_by_thread(begins_list), has_list || begins_list);
                 if threads.is_empty() {
                     return Err(nothing_to_run(&profile.name));
@@ -123,7 +124,7 @@ impl RealTimeReplay {
                     let alone = RunConfig {
                         registry: registry.clone(),
                         hosts: vec![host],
-                        publishers: company.to_vec(),
+                        publishers: publishers.to_vec(),
                         ..RunConfig::default()
                     };
                     parts.push(ThreadReplay::new(
@@ -309,8 +310,8 @@ impl ThreadReplay {
         thread: ThreadPosition,
     ) -> Result<ThreadReplay, Error> {
         let agent = profile.name.clone();
-        let ear = OwnOutputTap::new(&agent, thread.part());
-        config.observers.push(Box::new(ear.clone()));
+        let outputs = OwnOutputTap::new(&agent, thread.part());
+        config.observers.push(Box::new(outputs.clone()));
         let PreparedRun { mut stations, factory, .. } = PreparedRun::new(config, REAL_TIME_SEED)?;
         let Some(PreparedHost { hub, agents: mut members, links, context: ground, .. }) = stations.pop()
         else {
@@ -318,7 +319,7 @@ impl ThreadReplay {
         };
         let host = hub.host().to_owned();
         let brought = LinkedTopics::by(&links, &hub)?.own;
-        let feed = RecordedInputs::new(ear.clone());
+        let feed = RecordedInputs::new(outputs.clone());
         let member = members.pop().ok_or_else(|| nothing_to_run(&agent))?;
         let repeated = ReplayedThread::new(member, &feed)?.ok_or_else(|| nothing_to_run(&agent))?;
         let ordered = RecordedChanges::new(ground, factory, profile, thread)?;
@@ -332,7 +333,7 @@ impl ThreadReplay {
             linked_topics: brought,
             thread_replay: repeated,
             changes: ordered,
-            own_outputs: ear,
+            own_outputs: outputs,
             recorded_inputs: feed,
             comparison: window,
             own,
@@ -348,7 +349,7 @@ impl ThreadReplay {
     fn route(
         &self,
         recorded: RecordedStream<'_>,
-        ledger: &mut ComparisonReport,
+        report: &mut ComparisonReport,
     ) -> Result<Option<RealTimeRoute>, Error> {
         let RecordedStream { host, received_by, publisher, part, topic } = recorded;
         if received_by.unwrap_or(host) != self.host {
@@ -358,7 +359,7 @@ impl ThreadReplay {
         let is_brought = slot.is_some_and(|slot| self.linked_topics.contains(&slot));
         let is_own = publisher == self.agent && part == self.thread.part();
         if received_by.is_none() && is_own && !is_brought {
-            let (line, is_cycle) = (ledger.line(host, publisher, topic), topic == CYCLE.path());
+            let (line, is_cycle) = (report.line(host, publisher, topic), topic == CYCLE.path());
             return Ok(Some(RealTimeRoute::Own { topic: slot, line, is_cycle }));
         }
         // The host publishes its own record here too.
@@ -380,7 +381,7 @@ impl ThreadReplay {
         &mut self,
         own: OwnMessage,
         is_cycle: bool,
-        ledger: &mut ComparisonReport,
+        report: &mut ComparisonReport,
         on_difference: &mut dyn FnMut(ReplayDifference),
     ) -> Result<(), Error> {
         if !is_cycle {
@@ -400,7 +401,7 @@ impl ThreadReplay {
             return Err(self.missing_record_error());
         }
         match (&self.thread_replay, record.turn()) {
-            (_, Turn::Ordered) => self.follow(&record, ledger, on_difference)?,
+            (_, Turn::Ordered) => self.follow(&record, report, on_difference)?,
             (_, Turn::None | Turn::Start) if self.is_removed => {
                 return Err(returned_without_a_record(&self.agent));
             }
@@ -415,7 +416,7 @@ impl ThreadReplay {
                 return Err(self.missing_record_error());
             }
             (ReplayedThread::List(_), Turn::None) => {
-                self.run_begun(true, ledger, on_difference)?;
+                self.run_begun(true, report, on_difference)?;
                 self.changes.begin_turn()?;
                 self.own.push(OwnMessage { bytes: plain(&record), ..own });
                 self.pending_cycle = Some(record);
@@ -429,7 +430,7 @@ impl ThreadReplay {
                 if turn == Turn::Round {
                     self.changes.begin_turn()?;
                 }
-                self.run(turn, &record, true, ledger, on_difference)?;
+                self.run(turn, &record, true, report, on_difference)?;
             }
         }
         Ok(())
@@ -449,11 +450,11 @@ impl ThreadReplay {
     fn follow(
         &mut self,
         record: &Cycle,
-        ledger: &mut ComparisonReport,
+        report: &mut ComparisonReport,
         on_difference: &mut dyn FnMut(ReplayDifference),
     ) -> Result<(), Error> {
-        self.run_begun(true, ledger, on_difference)?;
-        self.run_unrecorded(Timestamp::from_nanos(record.time), ledger, on_difference)?;
+        self.run_begun(true, report, on_difference)?;
+        self.run_unrecorded(Timestamp::from_nanos(record.time), report, on_difference)?;
         self.recorded_inputs.begin(&record.seen, std::iter::empty());
         self.recorded_inputs.fetching();
         let (change, now) = (self.changes.recorded_change(record)?, Timestamp::from_nanos(record.time));
@@ -467,10 +468,10 @@ impl ThreadReplay {
     /// Processes the removal of the agent: its last cycle is known.
     fn handle_removal(
         &mut self,
-        ledger: &mut ComparisonReport,
+        report: &mut ComparisonReport,
         on_difference: &mut dyn FnMut(ReplayDifference),
     ) -> Result<(), Error> {
-        self.run_begun(true, ledger, on_difference)?;
+        self.run_begun(true, report, on_difference)?;
         self.is_removed = true;
         self.changes.discard_requests(&self.agent);
         Ok(())
@@ -522,11 +523,11 @@ impl ThreadReplay {
     fn run_begun(
         &mut self,
         is_whole: bool,
-        ledger: &mut ComparisonReport,
+        report: &mut ComparisonReport,
         on_difference: &mut dyn FnMut(ReplayDifference),
     ) -> Result<(), Error> {
         match self.pending_cycle.take() {
-            Some(record) => self.run(Turn::None, &record, is_whole, ledger, on_difference),
+            Some(record) => self.run(Turn::None, &record, is_whole, report, on_difference),
             None => Ok(()),
         }
     }
@@ -537,10 +538,10 @@ impl ThreadReplay {
         turn: Turn,
         record: &Cycle,
         is_whole: bool,
-        ledger: &mut ComparisonReport,
+        report: &mut ComparisonReport,
         on_difference: &mut dyn FnMut(ReplayDifference),
     ) -> Result<(), Error> {
-        self.run_unrecorded(Timestamp::from_nanos(record.time), ledger, on_difference)?;
+        self.run_unrecorded(Timestamp::from_nanos(record.time), report, on_difference)?;
         self.recorded_inputs.begin(&record.seen, self.own.iter().map(|own| own.position));
         let now = Timestamp::from_nanos(record.time);
         let numbers = std::mem::take(&mut self.numbers);
@@ -554,7 +555,7 @@ impl ThreadReplay {
             ReplayedThread::Chart(chart) => chart.turn(turn, record, self.has_diverged),
         }
         self.recorded_inputs.failure()?;
-        self.compare(now, is_whole, ledger, on_difference);
+        self.compare(now, is_whole, report, on_difference);
         Ok(())
     }
 
@@ -562,7 +563,7 @@ impl ThreadReplay {
     fn run_unrecorded(
         &mut self,
         until: Timestamp,
-        ledger: &mut ComparisonReport,
+        report: &mut ComparisonReport,
         on_difference: &mut dyn FnMut(ReplayDifference),
     ) -> Result<(), Error> {
         let recorded = std::mem::take(&mut self.own);
@@ -572,7 +573,7 @@ impl ThreadReplay {
             self.recorded_inputs.begin_unrecorded(due);
             chart.run_unrecorded_turn(due);
             self.recorded_inputs.failure()?;
-            self.compare(due, true, ledger, on_difference);
+            self.compare(due, true, report, on_difference);
         }
         self.own = recorded;
         Ok(())
@@ -582,7 +583,7 @@ impl ThreadReplay {
         &mut self,
         now: Timestamp,
         is_whole: bool,
-        ledger: &mut ComparisonReport,
+        report: &mut ComparisonReport,
         on_difference: &mut dyn FnMut(ReplayDifference),
     ) {
         // Measurements are not repeated.
@@ -600,7 +601,7 @@ impl ThreadReplay {
             self.comparison.discard_pending();
         }
         let has_diverged = &mut self.has_diverged;
-        self.comparison.compare(&self.hub, now, ledger, &mut |difference| {
+        self.comparison.compare(&self.hub, now, report, &mut |difference| {
             *has_diverged = true;
             on_difference(difference);
         });
@@ -610,14 +611,14 @@ impl ThreadReplay {
     fn finish(
         &mut self,
         is_whole: bool,
-        ledger: &mut ComparisonReport,
+        report: &mut ComparisonReport,
         on_difference: &mut dyn FnMut(ReplayDifference),
     ) -> Result<(), Error> {
         let last = self.pending_cycle.as_ref().map(|record| Timestamp::from_nanos(record.time));
-        self.run_begun(is_whole, ledger, on_difference)?;
+        self.run_begun(is_whole, report, on_difference)?;
         // The inputs of a turn whose record was cut off are unknown.
         if is_whole {
-            self.compare(last.unwrap_or_default(), is_whole, ledger, on_difference);
+            self.compare(last.unwrap_or_default(), is_whole, report, on_difference);
         }
         Ok(())
     }

@@ -85,9 +85,9 @@ impl RecordedChanges {
         profile: AgentProfile,
         thread: ThreadPosition,
     ) -> Result<RecordedChanges, Error> {
-        let roster = HostAdmin::new(ground, factory, vec![profile], None)?;
+        let admin = HostAdmin::new(ground, factory, vec![profile], None)?;
         Ok(RecordedChanges {
-            admin: roster,
+            admin,
             thread,
             requests: VecDeque::new(),
             was_applied: false,
@@ -127,9 +127,9 @@ impl RecordedChanges {
         repeated: &mut ReplayedThread,
         now: Timestamp,
     ) -> Result<PreparedAgent, Error> {
-        let mut staff = ChangeReplayer::of(change, self.thread, repeated, now);
-        let changed = self.admin.restart_removed(change, &[agent.to_owned()], &mut staff, now);
-        let begun = staff
+        let mut replayer = ChangeReplayer::of(change, self.thread, repeated, now);
+        let changed = self.admin.restart_removed(change, &[agent.to_owned()], &mut replayer, now);
+        let begun = replayer
             .begun
             .ok_or_else(|| refused_change_error(&Changed { agent: agent.to_owned(), ..changed }, now))?;
         self.thread.has_list = begun.list.is_some();
@@ -178,9 +178,9 @@ impl RecordedChanges {
         let comes_or_goes = matches!(changed.action(), Action::AddAgents | Action::RemoveAgent);
         let Some(place) = place.filter(|_| !comes_or_goes) else { return };
         let RecordedRequest { change, .. } = &self.requests[place];
-        let mut staff =
+        let mut replayer =
             ChangeReplayer { is_unaffected: true, ..ChangeReplayer::of(change, self.thread, repeated, at) };
-        if self.admin.replay_change(change, &mut staff, at).done {
+        if self.admin.replay_change(change, &mut replayer, at).done {
             self.requests.remove(place);
         }
     }
@@ -227,11 +227,11 @@ impl RecordedChanges {
         repeated: &mut ReplayedThread,
         now: Timestamp,
     ) -> Result<(), Error> {
-        let mut staff = ChangeReplayer::of(change, self.thread, repeated, now);
-        let changed = self.admin.replay_change(change, &mut staff, now);
-        let was_told = staff.was_applied;
+        let mut replayer = ChangeReplayer::of(change, self.thread, repeated, now);
+        let changed = self.admin.replay_change(change, &mut replayer, now);
+        let was_applied = replayer.was_applied;
         self.thread.has_list |= matches!(repeated, ReplayedThread::List(_));
-        if was_told { Ok(()) } else { Err(refused_change_error(&changed, now)) }
+        if was_applied { Ok(()) } else { Err(refused_change_error(&changed, now)) }
     }
 
     /// Processes the reply to a module change. An agent with a record of the change has applied it
@@ -247,8 +247,8 @@ impl RecordedChanges {
     ) -> Result<(), Error> {
         let request = self.request_of(changed).and_then(|place| self.requests.remove(place));
         let Some(RecordedRequest { change, .. }) = request.filter(|_| changed.done) else { return Ok(()) };
-        let mut staff = ChangeReplayer::of(&change, self.thread, repeated, now);
-        let again = self.admin.replay_change(&change, &mut staff, now);
+        let mut replayer = ChangeReplayer::of(&change, self.thread, repeated, now);
+        let again = self.admin.replay_change(&change, &mut replayer, now);
         if again.done { Ok(()) } else { Err(refused_change_error(&again, now)) }
     }
 

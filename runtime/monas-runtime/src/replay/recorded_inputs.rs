@@ -90,14 +90,14 @@ struct RecordedInputState {
 }
 
 impl RecordedInputs {
-    pub(crate) fn new(ear: OwnOutputTap) -> RecordedInputs {
+    pub(crate) fn new(outputs: OwnOutputTap) -> RecordedInputs {
         let (inlets, waiting, fetches, own) = Default::default();
         RecordedInputs(Arc::new(Mutex::new(RecordedInputState {
             endpoints: inlets,
             waiting,
             fetches,
             own,
-            own_outputs: ear,
+            own_outputs: outputs,
             failure: None,
         })))
     }

@@ -103,23 +103,23 @@ impl ReplayHost {
     pub(crate) fn new(
         station: PreparedHost,
         factory: &Arc<AgentFactory>,
-        company: &[RecordedPublisher],
+        publishers: &[RecordedPublisher],
     ) -> Result<ReplayHost, Error> {
         let PreparedHost { hub, agents: members, context: ground, profiles, configuration, .. } = station;
         let moved = PublishedTopics::default();
         hub.set_waker(Arc::new(moved.topic_callback()));
-        let others = company.iter().filter(|one| one.is_agent && one.host == hub.host());
+        let others = publishers.iter().filter(|one| one.is_agent && one.host == hub.host());
         let names: BTreeSet<String> = others
             .map(|one| one.publisher.clone())
             .chain(members.iter().map(|member| member.name.clone()))
             .collect();
         let places: Vec<String> = names.into_iter().collect();
-        let actor = |member: super::super::agent_factory::PreparedAgent| {
+        let replayed = |member: super::super::agent_factory::PreparedAgent| {
             let place = places.binary_search(&member.name).unwrap_or_default();
             let window = MomentComparison::new(hub.host(), &member.name);
             ReplayedAgent { place, instance: AgentInstance::new(member, Timestamp::ZERO), comparison: window }
         };
-        let actors = members.into_iter().map(actor).collect();
+        let agents = members.into_iter().map(replayed).collect();
         Ok(ReplayHost {
             admin: HostAdmin::new(ground, factory.clone(), profiles, configuration)?,
             hub,
@@ -127,7 +127,7 @@ impl ReplayHost {
             removed: Vec::new(),
             returned_by: None,
             refused: None,
-            agents: actors,
+            agents,
             places,
             turn: None,
             now: Timestamp::ZERO,
@@ -138,7 +138,7 @@ impl ReplayHost {
 
     /// Index of a replayed agent.
     pub(crate) fn agent_index(&self, name: &str) -> Option<usize> {
-        self.agents.iter().position(|actor| actor.instance.name() == name)
+        self.agents.iter().position(|agent| agent.instance.name() == name)
     }
 
     /// Index of an agent in the order of turns, replayed or not.
@@ -148,8 +148,8 @@ impl ReplayHost {
 
     /// Processes a publication of an agent before any agent has run.
     pub(crate) fn was_set_up(&mut self, produced: &AgentOutput) {
-        if let Some(actor) = self.agent_index(&produced.publisher) {
-            self.agents[actor].comparison.produced(produced.topic, produced.bytes.clone());
+        if let Some(agent) = self.agent_index(&produced.publisher) {
+            self.agents[agent].comparison.produced(produced.topic, produced.bytes.clone());
         }
     }
 
@@ -157,15 +157,15 @@ impl ReplayHost {
     pub(crate) fn advance_to(
         &mut self,
         moment: Timestamp,
-        spy: &OutputCapture,
-        ledger: &mut ComparisonReport,
+        output: &OutputCapture,
+        report: &mut ComparisonReport,
         on_difference: &mut dyn FnMut(ReplayDifference),
     ) {
         while self.now < moment {
             SimulatedTimeGuard::pass(self.now);
-            self.run_and_compare(spy, ledger, on_difference);
+            self.run_and_compare(output, report, on_difference);
             // Requests that exist only in the replay may give agents something to do at this time.
-            self.apply_requests(spy);
+            self.apply_requests(output);
             self.now = if self.has_ended { moment } else { self.due().clamp(self.now, moment) };
             self.turn = None;
         }
@@ -173,32 +173,32 @@ impl ReplayHost {
     }
 
     /// Applies the requested changes since the last call that concern replayed agents.
-    pub(crate) fn apply_requests(&mut self, spy: &OutputCapture) {
+    pub(crate) fn apply_requests(&mut self, output: &OutputCapture) {
         while let Some(change) = self.admin.next_request().filter(|_| !self.has_ended) {
             if !self.removed.is_empty() {
-                self.restart_removed(&change, spy);
+                self.restart_removed(&change, output);
             }
             if let Some(change) = concerning(&change, |agent| self.admin.has_agent(agent)) {
-                self.replay_change(&change, spy);
+                self.replay_change(&change, output);
             }
         }
     }
 
-    fn replay_change(&mut self, change: &Change, spy: &OutputCapture) {
-        let is_done = self.make(spy, |roster, staff, now| roster.replay_change(change, staff, now));
+    fn replay_change(&mut self, change: &Change, output: &OutputCapture) {
+        let is_done = self.make(output, |admin, agents, now| admin.replay_change(change, agents, now));
         if is_done && change.action() == Action::RemoveAgent {
             self.removed.push(change.agent.clone());
         }
     }
 
     /// Restarts removed agents that the change adds.
-    fn restart_removed(&mut self, change: &Change, spy: &OutputCapture) {
+    fn restart_removed(&mut self, change: &Change, output: &OutputCapture) {
         let names = added(change, self.admin.registry());
         let back: Vec<String> = self.removed.iter().filter(|gone| names.contains(gone)).cloned().collect();
         if back.is_empty() {
             return;
         }
-        if self.make(spy, |roster, staff, now| roster.restart_removed(change, &back, staff, now)) {
+        if self.make(output, |admin, agents, now| admin.restart_removed(change, &back, agents, now)) {
             self.removed.retain(|gone| !back.contains(gone));
             self.returned_by = Some(change.number);
         }
@@ -207,19 +207,19 @@ impl ReplayHost {
     /// Applies a change; returns false if it cannot be applied.
     fn make(
         &mut self,
-        spy: &OutputCapture,
+        output: &OutputCapture,
         make: impl FnOnce(&mut HostAdmin, &mut ReplayedAgents<'_>, Timestamp) -> Changed,
     ) -> bool {
         self.is_setting_up = false;
         // As in the recorded run: a step of a paused agent sees what has arrived by then.
         self.deliver_publications();
         let now = self.now;
-        let mut staff = ReplayedAgents { host: self.hub.host(), agents: &mut self.agents, now };
+        let mut agents = ReplayedAgents { host: self.hub.host(), agents: &mut self.agents, now };
         let mut is_done = false;
-        let produced = spy.capture(|| is_done = make(&mut self.admin, &mut staff, now).done);
+        let produced = output.capture(|| is_done = make(&mut self.admin, &mut agents, now).done);
         for one in produced {
-            if let Some(actor) = self.agent_index(&one.publisher) {
-                self.agents[actor].comparison.produced(one.topic, one.bytes);
+            if let Some(agent) = self.agent_index(&one.publisher) {
+                self.agents[agent].comparison.produced(one.topic, one.bytes);
             }
         }
         self.deliver_publications();
@@ -247,32 +247,32 @@ impl ReplayHost {
     }
 
     fn due(&self) -> Timestamp {
-        self.agents.iter().map(|actor| actor.instance.due(self.now)).min().unwrap_or(Timestamp::MAX)
+        self.agents.iter().map(|agent| agent.instance.due(self.now)).min().unwrap_or(Timestamp::MAX)
     }
 
     /// Executes what is still due at this time, and compares.
     fn run_and_compare(
         &mut self,
-        spy: &OutputCapture,
-        ledger: &mut ComparisonReport,
+        output: &OutputCapture,
+        report: &mut ComparisonReport,
         on_difference: &mut dyn FnMut(ReplayDifference),
     ) {
         if !self.has_ended {
-            self.run_due(self.turn, None, spy);
+            self.run_due(self.turn, None, output);
             while self.due() <= self.now {
-                self.run_due(None, None, spy);
+                self.run_due(None, None, output);
             }
         }
-        for actor in &mut self.agents {
-            actor.comparison.compare(&self.hub, self.now, ledger, on_difference);
+        for agent in &mut self.agents {
+            agent.comparison.compare(&self.hub, self.now, report, on_difference);
         }
     }
 
     /// Begins the turn of an agent that is not replayed, or of no agent.
-    pub(crate) fn turn_of_another(&mut self, place: Option<usize>, sets_up: bool, spy: &OutputCapture) {
+    pub(crate) fn turn_of_another(&mut self, place: Option<usize>, sets_up: bool, output: &OutputCapture) {
         self.is_setting_up &= sets_up;
         if let Some(place) = place.filter(|_| !self.is_setting_up) {
-            self.run_before(place, spy);
+            self.run_before(place, output);
         }
     }
 
@@ -280,76 +280,76 @@ impl ReplayHost {
     /// published this yet.
     pub(crate) fn expect(
         &mut self,
-        actor: usize,
+        agent: usize,
         topic: Option<TopicSlot>,
         line: usize,
         bytes: &[u8],
-        spy: &OutputCapture,
+        output: &OutputCapture,
     ) {
-        let window = &mut self.agents[actor].comparison;
+        let window = &mut self.agents[agent].comparison;
         window.recorded(topic, line, bytes.to_vec());
         if !window.is_behind() || self.has_ended {
             return;
         }
         self.is_setting_up = false;
-        let place = self.agents[actor].place;
+        let place = self.agents[agent].place;
         if self.turn == Some(place) {
             // It has had its turn, and gets another one after all others.
-            self.run_due(Some(place), None, spy);
+            self.run_due(Some(place), None, output);
             self.turn = None;
         }
-        self.run_before(place, spy);
+        self.run_before(place, output);
         self.deliver_publications();
-        if self.agents[actor].instance.due(self.now) <= self.now {
-            self.run(actor, spy);
+        if self.agents[agent].instance.due(self.now) <= self.now {
+            self.run(agent, output);
         }
     }
 
     /// Executes the turns of the agents before a place.
-    fn run_before(&mut self, place: usize, spy: &OutputCapture) {
+    fn run_before(&mut self, place: usize, output: &OutputCapture) {
         if self.turn == Some(place) {
             return;
         }
         if self.turn.is_some_and(|turn| turn > place) {
-            self.run_due(self.turn, None, spy);
+            self.run_due(self.turn, None, output);
             self.turn = None;
         }
-        self.run_due(self.turn, Some(place), spy);
+        self.run_due(self.turn, Some(place), output);
         self.turn = Some(place);
     }
 
     /// Executes the turns of the agents between two places that have something to do.
-    fn run_due(&mut self, after: Option<usize>, before: Option<usize>, spy: &OutputCapture) {
+    fn run_due(&mut self, after: Option<usize>, before: Option<usize>, output: &OutputCapture) {
         self.deliver_publications();
-        for actor in 0..self.agents.len() {
-            let ReplayedAgent { place, instance, .. } = &self.agents[actor];
+        for agent in 0..self.agents.len() {
+            let ReplayedAgent { place, instance, .. } = &self.agents[agent];
             let is_between =
                 after.is_none_or(|after| *place > after) && before.is_none_or(|before| *place < before);
             if is_between && instance.due(self.now) <= self.now {
-                self.run(actor, spy);
+                self.run(agent, output);
             }
         }
     }
 
-    fn run(&mut self, actor: usize, spy: &OutputCapture) {
-        let ReplayedAgent { instance, comparison: window, .. } = &mut self.agents[actor];
+    fn run(&mut self, agent: usize, output: &OutputCapture) {
+        let ReplayedAgent { instance, comparison: window, .. } = &mut self.agents[agent];
         let now = self.now;
         // A replayed host has no body that could enter its safe state.
-        let produced = spy.capture(|| _ = instance.run(now));
+        let produced = output.capture(|| _ = instance.run(now));
         produced.into_iter().for_each(|one| window.produced(one.topic, one.bytes));
         self.deliver_publications();
     }
 
     fn deliver_publications(&mut self) {
-        self.moved.deliver(self.agents.iter_mut().map(|actor| &mut actor.instance), self.now);
+        self.moved.deliver(self.agents.iter_mut().map(|agent| &mut agent.instance), self.now);
     }
 
     /// Stops the agents, as the recorded run was stopped now.
-    pub(crate) fn stop(&mut self, spy: &OutputCapture) {
+    pub(crate) fn stop(&mut self, output: &OutputCapture) {
         self.has_ended = true;
         let now = self.now;
         for ReplayedAgent { instance, comparison: window, .. } in &mut self.agents {
-            let produced = spy.capture(|| instance.stop(ENDED, now));
+            let produced = output.capture(|| instance.stop(ENDED, now));
             produced.into_iter().for_each(|one| window.produced(one.topic, one.bytes));
         }
     }
@@ -358,16 +358,16 @@ impl ReplayHost {
     pub(crate) fn close(
         &mut self,
         is_whole: bool,
-        spy: &OutputCapture,
-        ledger: &mut ComparisonReport,
+        output: &OutputCapture,
+        report: &mut ComparisonReport,
         on_difference: &mut dyn FnMut(ReplayDifference),
     ) {
         if is_whole {
-            return self.run_and_compare(spy, ledger, on_difference);
+            return self.run_and_compare(output, report, on_difference);
         }
-        for actor in &mut self.agents {
-            actor.comparison.discard_pending();
-            actor.comparison.compare(&self.hub, self.now, ledger, on_difference);
+        for agent in &mut self.agents {
+            agent.comparison.discard_pending();
+            agent.comparison.compare(&self.hub, self.now, report, on_difference);
         }
     }
 }

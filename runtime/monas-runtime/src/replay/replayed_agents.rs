@@ -33,11 +33,14 @@ pub(crate) struct ReplayedAgents<'a> {
 
 impl ReplayedAgents<'_> {
     fn instance(&self, agent: &str) -> Option<&AgentInstance> {
-        self.agents.iter().map(|actor| &actor.instance).find(|instance| instance.name() == agent)
+        self.agents.iter().map(|replayed| &replayed.instance).find(|instance| instance.name() == agent)
     }
 
     fn instance_mut(&mut self, agent: &str) -> Option<&mut AgentInstance> {
-        self.agents.iter_mut().map(|actor| &mut actor.instance).find(|instance| instance.name() == agent)
+        self.agents
+            .iter_mut()
+            .map(|replayed| &mut replayed.instance)
+            .find(|instance| instance.name() == agent)
     }
 }
 

@@ -23,7 +23,7 @@ use monas_core::records::{CHANGE, CHANGED, CHART, Changed, HOST, LOG, MODEL};
 /// anything left to do. The messages of agents that are not replayed mark the turns of those that
 /// are.
 pub(crate) struct SimulatedReplay {
-    scenes: Vec<ReplayHost>,
+    hosts: Vec<ReplayHost>,
     capture: OutputCapture,
     inputs: Vec<SimulatedRoute>,
     report: ComparisonReport,
@@ -32,10 +32,10 @@ pub(crate) struct SimulatedReplay {
 /// The treatment of recorded messages.
 enum SimulatedRoute {
     /// Compared with the publications of an agent.
-    Compared { scene: usize, actor: usize, topic: Option<TopicSlot>, path: usize },
+    Compared { host: usize, agent: usize, topic: Option<TopicSlot>, path: usize },
     /// Published again. Messages of an agent are published in its turn.
     Published {
-        scene: usize,
+        host: usize,
         publisher: AnyPublisher,
         place: Option<usize>,
         sets_up: bool,
@@ -43,7 +43,7 @@ enum SimulatedRoute {
         answers: bool,
     },
     /// Received from another host, and delivered as such again.
-    Received { scene: usize, receiver: Receiver },
+    Received { host: usize, receiver: Receiver },
     /// Ignored: their host is not replayed, or does not declare the topic.
     Ignored,
 }
@@ -52,25 +52,25 @@ impl SimulatedReplay {
     pub(crate) fn new(
         mut config: RunConfig,
         seed: u64,
-        company: &[RecordedPublisher],
+        publishers: &[RecordedPublisher],
     ) -> Result<SimulatedReplay, Error> {
-        let spy = OutputCapture::default();
-        config.observers.push(Box::new(spy.clone()));
-        config.publishers = company.to_vec();
+        let capture = OutputCapture::default();
+        config.observers.push(Box::new(capture.clone()));
+        config.publishers = publishers.to_vec();
         let PreparedRun { stations, factory, .. } = PreparedRun::new(config, seed)?;
-        let scenes = stations.into_iter().map(|station| ReplayHost::new(station, &factory, company));
-        let mut scenes = scenes.collect::<Result<Vec<ReplayHost>, Error>>()?;
-        for produced in spy.take() {
-            let scene = scenes.iter_mut().find(|scene| scene.hub.host() == produced.host);
-            scene.into_iter().for_each(|scene| scene.was_set_up(&produced));
+        let hosts = stations.into_iter().map(|station| ReplayHost::new(station, &factory, publishers));
+        let mut hosts = hosts.collect::<Result<Vec<ReplayHost>, Error>>()?;
+        for produced in capture.take() {
+            let host = hosts.iter_mut().find(|host| host.hub.host() == produced.host);
+            host.into_iter().for_each(|host| host.was_set_up(&produced));
         }
-        spy.mute(true);
-        Ok(SimulatedReplay { scenes, capture: spy, inputs: Vec::new(), report: ComparisonReport::default() })
+        capture.mute(true);
+        Ok(SimulatedReplay { hosts, capture, inputs: Vec::new(), report: ComparisonReport::default() })
     }
 
     /// The names of the hosts.
     pub(crate) fn hosts(&self) -> Vec<&str> {
-        self.scenes.iter().map(|scene| scene.hub.host()).collect()
+        self.hosts.iter().map(|host| host.hub.host()).collect()
     }
 
     pub(crate) fn input(&mut self, recorded: RecordedStream<'_>) -> Result<usize, Error> {
@@ -82,20 +82,22 @@ impl SimulatedReplay {
     fn route(&mut self, recorded: RecordedStream<'_>) -> Result<SimulatedRoute, Error> {
         let RecordedStream { host, received_by, publisher, part, topic } = recorded;
         let recorder = received_by.unwrap_or(host);
-        let Some(scene) = self.scenes.iter().position(|scene| scene.hub.host() == recorder) else {
+        let Some(index) = self.hosts.iter().position(|host| host.hub.host() == recorder) else {
             return Ok(SimulatedRoute::Ignored);
         };
-        let hub = self.scenes[scene].hub.clone();
+        let hub = self.hosts[index].hub.clone();
         let slot = hub.topic(topic);
         if received_by.is_some() {
             let receiver = slot.map(|_| hub.receiver(host, publisher, topic)).transpose();
             let receiver = receiver.map_err(Error::hub)?;
-            return Ok(receiver
-                .map_or(SimulatedRoute::Ignored, |receiver| SimulatedRoute::Received { scene, receiver }));
+            return Ok(receiver.map_or(SimulatedRoute::Ignored, |receiver| SimulatedRoute::Received {
+                host: index,
+                receiver,
+            }));
         }
-        if let Some(actor) = self.scenes[scene].agent_index(publisher) {
+        if let Some(agent) = self.hosts[index].agent_index(publisher) {
             let path = self.report.line(host, publisher, topic);
-            return Ok(SimulatedRoute::Compared { scene, actor, topic: slot, path });
+            return Ok(SimulatedRoute::Compared { host: index, agent, topic: slot, path });
         }
         // The host publishes its own record here too.
         if slot.is_none() || (topic == HOST.path() && publisher == "monas") {
@@ -105,11 +107,11 @@ impl SimulatedReplay {
         let answers = topic == CHANGED.path() && publisher == HOST_ITSELF;
         // An external request was applied immediately, before any turn.
         let asks = topic == CHANGE.path() && publisher == OUTSIDE;
-        let place = self.scenes[scene].place(publisher);
+        let place = self.hosts[index].place(publisher);
         let publisher = hub.publisher_by_name(topic, publisher).map_err(Error::hub)?.of_part(part);
         // A log line may stand anywhere.
         let sets_up = [HOST.path(), MODEL.path(), CHART.path(), LOG.path()].contains(&topic);
-        Ok(SimulatedRoute::Published { scene, publisher, place, sets_up, asks, answers })
+        Ok(SimulatedRoute::Published { host: index, publisher, place, sets_up, asks, answers })
     }
 
     pub(crate) fn feed(
@@ -118,33 +120,33 @@ impl SimulatedReplay {
         message: RecordedMessage<'_>,
         on_difference: &mut dyn FnMut(ReplayDifference),
     ) -> Result<(), Error> {
-        let SimulatedReplay { scenes, capture: spy, inputs, report: ledger } = self;
+        let SimulatedReplay { hosts, capture, inputs, report } = self;
         let Some(route) = inputs.get_mut(input) else {
             return Err(no_input());
         };
         match route {
             SimulatedRoute::Ignored => {}
-            SimulatedRoute::Compared { scene, actor, topic, path } => {
-                let scene = &mut scenes[*scene];
-                scene.advance_to(message.received, spy, ledger, on_difference);
-                scene.expect(*actor, *topic, *path, message.bytes, spy);
+            SimulatedRoute::Compared { host, agent, topic, path } => {
+                let host = &mut hosts[*host];
+                host.advance_to(message.received, capture, report, on_difference);
+                host.expect(*agent, *topic, *path, message.bytes, capture);
             }
-            SimulatedRoute::Published { scene, publisher, place, sets_up, asks, answers } => {
-                let scene = &mut scenes[*scene];
-                scene.advance_to(message.received, spy, ledger, on_difference);
-                scene.turn_of_another(*place, *sets_up, spy);
+            SimulatedRoute::Published { host, publisher, place, sets_up, asks, answers } => {
+                let host = &mut hosts[*host];
+                host.advance_to(message.received, capture, report, on_difference);
+                host.turn_of_another(*place, *sets_up, capture);
                 if *answers {
-                    scene.apply_requests(spy);
-                    scene.answered(&Changed::decode(message.bytes).map_err(unread)?);
+                    host.apply_requests(capture);
+                    host.answered(&Changed::decode(message.bytes).map_err(unread)?);
                 }
-                publisher.publish_bytes(message.bytes, scene.now).map_err(Error::hub)?;
+                publisher.publish_bytes(message.bytes, host.now).map_err(Error::hub)?;
                 if *asks {
-                    scene.apply_requests(spy);
+                    host.apply_requests(capture);
                 }
             }
-            SimulatedRoute::Received { scene, receiver } => {
-                let scene = &mut scenes[*scene];
-                scene.advance_to(message.received, spy, ledger, on_difference);
+            SimulatedRoute::Received { host, receiver } => {
+                let host = &mut hosts[*host];
+                host.advance_to(message.received, capture, report, on_difference);
                 let arrival = RemoteHeader {
                     sequence: message.sequence.into(),
                     published: message.published,
@@ -154,13 +156,13 @@ impl SimulatedReplay {
                 receiver.receive_bytes(message.bytes, arrival).map_err(Error::hub)?;
             }
         }
-        self.scenes.iter_mut().try_for_each(ReplayHost::check)
+        self.hosts.iter_mut().try_for_each(ReplayHost::check)
     }
 
     pub(crate) fn end(&mut self, moment: Timestamp, on_difference: &mut dyn FnMut(ReplayDifference)) {
-        for scene in &mut self.scenes {
-            scene.advance_to(moment, &self.capture, &mut self.report, on_difference);
-            scene.stop(&self.capture);
+        for host in &mut self.hosts {
+            host.advance_to(moment, &self.capture, &mut self.report, on_difference);
+            host.stop(&self.capture);
         }
     }
 
@@ -169,9 +171,9 @@ impl SimulatedReplay {
         is_whole: bool,
         on_difference: &mut dyn FnMut(ReplayDifference),
     ) -> Result<Vec<ComparisonCounts>, Error> {
-        for scene in &mut self.scenes {
-            scene.close(is_whole, &self.capture, &mut self.report, on_difference);
-            scene.check()?;
+        for host in &mut self.hosts {
+            host.close(is_whole, &self.capture, &mut self.report, on_difference);
+            host.check()?;
         }
         Ok(self.report.tallies())
     }

@@ -61,7 +61,7 @@ impl SimulatedHost {
                 ring.store(true, Ordering::Relaxed);
             }
         });
-        let roster = HostAdmin::new(ground, factory.clone(), profiles, configuration)?;
+        let admin = HostAdmin::new(ground, factory.clone(), profiles, configuration)?;
         // Links bring messages at once: what they bring before all of them stand is noted too.
         hub.set_waker(noted.clone());
         let mut linked = Vec::new();
@@ -91,7 +91,7 @@ impl SimulatedHost {
             clock: None,
             removed: Vec::new(),
         };
-        Ok(SimulatedHost { moved, has_requests: asked, admin: roster, team })
+        Ok(SimulatedHost { moved, has_requests: asked, admin, team })
     }
 
     pub(crate) fn name(&self) -> &str {

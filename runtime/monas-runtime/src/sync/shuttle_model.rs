@@ -186,33 +186,33 @@ impl<const WAKES: bool> ModelState<WAKES> {
 
 #[test]
 fn every_activity_returns_and_every_message_wakes_in_ten_thousand_interleavings() {
-    let scene = ModelScenario { regions: 3, calls: 3, workers: 2, messages: 2 };
-    shuttle::check_random(move || scene.play::<true>(), 6_000);
-    shuttle::check_pct(move || scene.play::<true>(), 4_000, 3);
+    let scenario = ModelScenario { regions: 3, calls: 3, workers: 2, messages: 2 };
+    shuttle::check_random(move || scenario.play::<true>(), 6_000);
+    shuttle::check_pct(move || scenario.play::<true>(), 4_000, 3);
 }
 
 #[test]
 fn no_wake_up_is_lost_in_any_interleaving_of_a_chart_and_a_message() {
-    let scene = ModelScenario { regions: 0, calls: 0, workers: 0, messages: 1 };
-    shuttle::check_dfs(move || scene.play::<true>(), None);
+    let scenario = ModelScenario { regions: 0, calls: 0, workers: 0, messages: 1 };
+    shuttle::check_dfs(move || scenario.play::<true>(), None);
 }
 
 #[test]
-fn more_workers_than_work_go_home() {
-    let scene = ModelScenario { regions: 2, calls: 1, workers: 4, messages: 0 };
-    shuttle::check_random(move || scene.play::<true>(), 2_000);
+fn surplus_workers_end() {
+    let scenario = ModelScenario { regions: 2, calls: 1, workers: 4, messages: 0 };
+    shuttle::check_random(move || scenario.play::<true>(), 2_000);
 }
 
 #[test]
 #[should_panic(expected = "deadlock")]
 fn a_lost_wake_up_of_a_chart_would_be_found() {
-    let scene = ModelScenario { regions: 0, calls: 0, workers: 0, messages: 1 };
-    shuttle::check_dfs(move || scene.play::<false>(), None);
+    let scenario = ModelScenario { regions: 0, calls: 0, workers: 0, messages: 1 };
+    shuttle::check_dfs(move || scenario.play::<false>(), None);
 }
 
 #[test]
 #[should_panic(expected = "deadlock")]
 fn a_lost_wake_up_of_a_worker_would_be_found() {
-    let scene = ModelScenario { regions: 1, calls: 2, workers: 1, messages: 0 };
-    shuttle::check_random(move || scene.play::<false>(), 2_000);
+    let scenario = ModelScenario { regions: 1, calls: 2, workers: 1, messages: 0 };
+    shuttle::check_random(move || scenario.play::<false>(), 2_000);
 }

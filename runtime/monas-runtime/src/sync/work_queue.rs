@@ -59,13 +59,13 @@ impl<J: Send + 'static, P: Primitives> WorkQueue<J, P> {
         self.waiting.set(true);
         let (jobs, lingering) = (state.jobs.len(), state.idle - state.asleep);
         let wakes = state.asleep > 0 && jobs > lingering;
-        let hires = state.workers < state.most && jobs > state.idle;
-        state.workers += usize::from(hires);
+        let starts_worker = state.workers < state.most && jobs > state.idle;
+        state.workers += usize::from(starts_worker);
         drop(state);
         if wakes {
             self.state.wake_one();
         }
-        hires
+        starts_worker
     }
 
     /// Unregisters a worker that could not be started. Returns whether others exist.
@@ -148,7 +148,7 @@ mod tests {
     }
 
     #[test]
-    fn workers_are_hired_while_jobs_wait_and_there_may_be_more() {
+    fn workers_are_added_while_jobs_wait_up_to_the_limit() {
         let work: WorkQueue<u32> = WorkQueue::new(2);
         assert!(work.submit(0, 1), "there is no worker");
         assert!(work.submit(0, 2), "the first has something to do");
