@@ -303,18 +303,18 @@ pub(crate) fn replay(
     overview: &TapeOverview,
 ) -> Result<Replay, monas::Error> {
     let cycles = monas::records::CYCLE.path();
-    let mut company: Vec<RecordedPublisher> = Vec::new();
+    let mut publishers: Vec<RecordedPublisher> = Vec::new();
     for counted in overview.channels.iter().filter(|one| one.channel.received_by.is_none()) {
         let (host, publisher) = (&counted.channel.host, &counted.channel.publisher);
         let (is_agent, last_part) = (counted.channel.topic == cycles, counted.channel.part);
-        match company.iter_mut().find(|one| one.host == *host && one.publisher == *publisher) {
+        match publishers.iter_mut().find(|one| one.host == *host && one.publisher == *publisher) {
             Some(known) => {
                 known.is_agent |= is_agent;
                 known.last_part = known.last_part.max(last_part);
             }
             None => {
                 let (host, publisher) = (host.clone(), publisher.clone());
-                company.push(RecordedPublisher { host, publisher, is_agent, last_part });
+                publishers.push(RecordedPublisher { host, publisher, is_agent, last_part });
             }
         }
     }
@@ -323,8 +323,8 @@ pub(crate) fn replay(
         talws.host(host);
     }
     match run.time {
-        TimeMode::Simulated { seed } => talws.replay(seed, &company),
-        TimeMode::Real => talws.replay_real_time(&company),
+        TimeMode::Simulated { seed } => talws.replay(seed, &publishers),
+        TimeMode::Real => talws.replay_real_time(&publishers),
     }
 }
 

@@ -23,7 +23,7 @@ fn chart(text: &str) -> Statechart {
 
 /// A chart whose events are recorded as words, with activities that wait at gates and messages sent
 /// by the test.
-struct PoolScene {
+struct PoolFixture {
     registry: Registry,
     words: Receiver<String>,
     report: Sender<String>,
@@ -34,18 +34,18 @@ struct PoolScene {
     news: Arc<AtomicBool>,
 }
 
-impl PoolScene {
+impl PoolFixture {
     /// `A` to `D` record their calls; `Work` records its start, waits at the gate, and
     /// records its end.
-    fn new() -> PoolScene {
+    fn new() -> PoolFixture {
         let (report, words) = channel();
         let (open, gate) = channel();
         let gate = Arc::new(Mutex::new(gate));
-        let scene =
-            PoolScene { registry: Registry::linked(), words, report, open, gate, news: Arc::default() };
-        let scene = ["A", "B", "C", "D"].into_iter().fold(scene, PoolScene::with_speaker);
-        let (report, gate) = (scene.report.clone(), scene.gate.clone());
-        scene.with("Work", move |_| {
+        let fixture =
+            PoolFixture { registry: Registry::linked(), words, report, open, gate, news: Arc::default() };
+        let fixture = ["A", "B", "C", "D"].into_iter().fold(fixture, PoolFixture::with_speaker);
+        let (report, gate) = (fixture.report.clone(), fixture.gate.clone());
+        fixture.with("Work", move |_| {
             report.send("Work begins".into())?;
             gate.lock().unwrap().recv_timeout(PATIENCE)?;
             report.send("Work ends".into())?;
@@ -57,12 +57,12 @@ impl PoolScene {
         mut self,
         name: &str,
         call: impl Fn(&mut Blackboard) -> Result<Progress, BoxError> + Clone + Send + Sync + 'static,
-    ) -> PoolScene {
+    ) -> PoolFixture {
         self.registry = self.registry.with(name, move || call.clone());
         self
     }
 
-    fn with_speaker(self, name: &'static str) -> PoolScene {
+    fn with_speaker(self, name: &'static str) -> PoolFixture {
         let report = self.report.clone();
         self.with(name, move |_| {
             report.send(name.into())?;
@@ -156,9 +156,9 @@ fn activities_of_three_regions_run_at_the_same_time_and_never_two_of_one() {
 
 #[test]
 fn an_interrupting_transition_asks_the_activity_to_return_and_fires_when_it_has() {
-    let scene = PoolScene::new();
-    let report = scene.report.clone();
-    let scene = scene.with("Watch", move |b| {
+    let fixture = PoolFixture::new();
+    let report = fixture.report.clone();
+    let fixture = fixture.with("Watch", move |b| {
         report.send("Watch begins".into())?;
         while !b.is_cancelled() {
             std::thread::yield_now();
@@ -166,69 +166,69 @@ fn an_interrupting_transition_asks_the_activity_to_return_and_fires_when_it_has(
         report.send("Watch ends".into())?;
         Ok(Progress::Done)
     });
-    let running = scene.start(same, "Liveness:\nm = Watch . B\nTransitions:\nWatch -> B interrupts : news");
-    assert_eq!(scene.next(1), ["Watch begins"]);
-    scene.report_news();
+    let running = fixture.start(same, "Liveness:\nm = Watch . B\nTransitions:\nWatch -> B interrupts : news");
+    assert_eq!(fixture.next(1), ["Watch begins"]);
+    fixture.report_news();
     // The activity may have received it before the thread of the chart has reported it.
-    let mut notes = scene.next(2);
+    let mut notes = fixture.next(2);
     notes.sort_unstable();
     assert_eq!(notes, ["Watch ends", "test/news held"]);
-    assert_eq!(scene.next(2), ["test/news", "B"]);
+    assert_eq!(fixture.next(2), ["test/news", "B"]);
     running.stop();
 }
 
 #[test]
 fn an_event_is_held_until_the_activity_of_the_state_it_leaves_has_returned() {
-    let scene = PoolScene::new();
-    let running = scene.start(same, "Liveness:\nm = Work . B\nTransitions:\nWork -> B : news");
-    assert_eq!(scene.next(1), ["Work begins"]);
-    scene.report_news();
-    assert_eq!(scene.next(1), ["test/news held"]);
-    scene.open_the_gate();
-    assert_eq!(scene.next(3), ["Work ends", "test/news", "B"]);
+    let fixture = PoolFixture::new();
+    let running = fixture.start(same, "Liveness:\nm = Work . B\nTransitions:\nWork -> B : news");
+    assert_eq!(fixture.next(1), ["Work begins"]);
+    fixture.report_news();
+    assert_eq!(fixture.next(1), ["test/news held"]);
+    fixture.open_the_gate();
+    assert_eq!(fixture.next(3), ["Work ends", "test/news", "B"]);
     running.stop();
 }
 
 #[test]
 fn a_guard_sees_what_the_blackboard_showed_when_the_running_activity_began() {
-    let scene = PoolScene::new();
+    let fixture = PoolFixture::new();
     // While `Work` runs, its blackboard shows the first ball; the second has arrived with the news,
     // but is not delivered to it.
     let text =
         "Liveness:\nm = A . Work . B\nTransitions:\nA -> Work : [ball.found]\nWork -> B : news [ball.x == 1]";
-    let running = scene.start(same, text);
-    assert_eq!(scene.next(2), ["A", "Work begins"]);
-    scene.report_news();
-    assert_eq!(scene.next(1), ["test/news held"], "the guard reads the first ball");
-    scene.open_the_gate();
+    let running = fixture.start(same, text);
+    assert_eq!(fixture.next(2), ["A", "Work begins"]);
+    fixture.report_news();
+    assert_eq!(fixture.next(1), ["test/news held"], "the guard reads the first ball");
+    fixture.open_the_gate();
     // Offered again it meets the second ball, so no transition takes it.
-    assert_eq!(scene.next(2), ["Work ends", "test/news"]);
+    assert_eq!(fixture.next(2), ["Work ends", "test/news"]);
     let statistics = running.stop();
     assert_eq!(statistics.calls("local", "B"), 0);
 }
 
 #[test]
 fn a_composite_is_not_left_while_an_activity_of_a_nested_and_runs() {
-    let scene = PoolScene::new();
+    let fixture = PoolFixture::new();
     let text = "Liveness:\nm = in . D\nin = A || deep\ndeep = B . pair\npair = C || Work\n\
                 Transitions:\nin -> D : news";
-    let running = scene.start(same, text);
-    let mut begun = scene.next(4);
+    let running = fixture.start(same, text);
+    let mut begun = fixture.next(4);
     begun.sort_unstable();
     assert_eq!(begun, ["A", "B", "C", "Work begins"]);
-    scene.report_news();
-    assert_eq!(scene.next(1), ["test/news held"]);
-    scene.open_the_gate();
-    assert_eq!(scene.next(3), ["Work ends", "test/news", "D"]);
+    fixture.report_news();
+    assert_eq!(fixture.next(1), ["test/news held"]);
+    fixture.open_the_gate();
+    assert_eq!(fixture.next(3), ["Work ends", "test/news", "D"]);
     running.stop();
 }
 
 #[test]
 fn two_states_with_one_activity_have_an_instance_and_a_running_flag_each() {
-    let scene = PoolScene::new();
-    let (report, gate) = (scene.report.clone(), scene.gate.clone());
+    let fixture = PoolFixture::new();
+    let (report, gate) = (fixture.report.clone(), fixture.gate.clone());
     let made = Arc::new(AtomicU64::new(0));
-    let registry = scene.registry.clone().with("Same", move || {
+    let registry = fixture.registry.clone().with("Same", move || {
         let (report, gate) = (report.clone(), gate.clone());
         let number = made.fetch_add(1, Ordering::SeqCst);
         move |_: &mut Blackboard| -> Result<(), BoxError> {
@@ -238,50 +238,50 @@ fn two_states_with_one_activity_have_an_instance_and_a_running_flag_each() {
             Ok(report.send(format!("Same {number}"))?)
         }
     });
-    let scene = PoolScene { registry, ..scene };
-    let running = scene.start(same, "m = (Same . A) || (Same . B)");
-    assert_eq!(scene.next(2), ["Same 0", "A"], "the other still runs");
-    scene.open_the_gate();
-    assert_eq!(scene.next(2), ["Same 1", "B"]);
+    let fixture = PoolFixture { registry, ..fixture };
+    let running = fixture.start(same, "m = (Same . A) || (Same . B)");
+    assert_eq!(fixture.next(2), ["Same 0", "A"], "the other still runs");
+    fixture.open_the_gate();
+    assert_eq!(fixture.next(2), ["Same 1", "B"]);
     running.stop();
 }
 
 #[test]
 fn a_message_wakes_a_chart_in_which_everybody_waits() {
-    let scene = PoolScene::new();
-    let report = scene.report.clone();
-    let scene = scene.with("Wait", move |b| {
+    let fixture = PoolFixture::new();
+    let report = fixture.report.clone();
+    let fixture = fixture.with("Wait", move |b| {
         let ball = b.read(BALL).map_or(0.0, |ball| ball.x);
         report.send(format!("ball {ball}"))?;
         Ok(if ball < 2.0 { Progress::after(Duration::from_secs(3600)) } else { Progress::Done })
     });
-    let running = scene.start(same, "m = Wait . A");
-    while scene.next(1) != ["ball 1"] {}
-    scene.report_news();
+    let running = fixture.start(same, "m = Wait . A");
+    while fixture.next(1) != ["ball 1"] {}
+    fixture.report_news();
     // A message that came while it was called wakes it once more, be it the one that it has already
     // seen.
-    let mut notes = scene.next(1);
+    let mut notes = fixture.next(1);
     while notes == ["ball 1"] {
-        notes = scene.next(1);
+        notes = fixture.next(1);
     }
     assert_eq!(notes, ["ball 2"]);
-    assert_eq!(scene.next(1), ["A"]);
+    assert_eq!(fixture.next(1), ["A"]);
     running.stop();
 }
 
 #[test]
 fn the_most_urgent_activity_goes_first_by_its_state_or_by_the_transition_into_it() {
-    let scene = PoolScene::new();
+    let fixture = PoolFixture::new();
     let text = "Liveness:\nm = Work || A || B || C\nTransitions:\nSTART -> B !5\nA -> END : news [false]\n\
                 States:\nWork : priority = 100\nC : priority = 9";
     let one = NonZeroUsize::MIN;
-    let running = scene.start(|agent| agent.workers(one), text);
-    assert_eq!(scene.next(1), ["Work begins"]);
-    scene.report_news();
+    let running = fixture.start(|agent| agent.workers(one), text);
+    assert_eq!(fixture.next(1), ["Work begins"]);
+    fixture.report_news();
     // The chart takes the news after it has handed out all that it started.
-    assert_eq!(scene.next(1), ["test/news"]);
-    scene.open_the_gate();
-    assert_eq!(scene.next(4), ["Work ends", "C", "B", "A"]);
+    assert_eq!(fixture.next(1), ["test/news"]);
+    fixture.open_the_gate();
+    assert_eq!(fixture.next(4), ["Work ends", "C", "B", "A"]);
     running.stop();
 }
 
@@ -296,17 +296,17 @@ impl Drop for Bomb {
 
 #[test]
 fn an_activity_that_panics_on_the_pool_frees_its_region_and_is_an_event() {
-    let scene = PoolScene::new();
-    let scene = scene.with("Fail", |_| std::panic::panic_any(Bomb));
-    let running = scene.start(
+    let fixture = PoolFixture::new();
+    let fixture = fixture.with("Fail", |_| std::panic::panic_any(Bomb));
+    let running = fixture.start(
         |agent| agent.on_failure(FailurePolicy::Skip),
         "Liveness:\nm = (Fail . A) || (Work . B)\nTransitions:\nFail -> A : error.activity",
     );
-    let mut words = scene.next(3);
+    let mut words = fixture.next(3);
     words.sort_unstable();
     assert_eq!(words, ["A", "Work begins", "error.activity"]);
-    scene.open_the_gate();
-    assert_eq!(scene.next(2), ["Work ends", "B"], "the other region goes on");
+    fixture.open_the_gate();
+    assert_eq!(fixture.next(2), ["Work ends", "B"], "the other region goes on");
     let statistics = running.stop();
     let failed = statistics.agents[0].activities.iter().map(|a| a.failures).sum::<u64>();
     assert_eq!((failed, statistics.agents[0].stopped.as_deref()), (1, None));
@@ -314,25 +314,25 @@ fn an_activity_that_panics_on_the_pool_frees_its_region_and_is_an_event() {
 
 #[test]
 fn the_end_of_a_run_asks_running_activities_to_return() {
-    let scene = PoolScene::new();
-    let report = scene.report.clone();
-    let scene = scene.with("Watch", move |b| {
+    let fixture = PoolFixture::new();
+    let report = fixture.report.clone();
+    let fixture = fixture.with("Watch", move |b| {
         report.send("Watch begins".into())?;
         while !b.is_cancelled() {
             std::thread::yield_now();
         }
         Ok(Progress::Done)
     });
-    let running = scene.start(same, "m = Watch");
-    assert_eq!(scene.next(1), ["Watch begins"]);
+    let running = fixture.start(same, "m = Watch");
+    assert_eq!(fixture.next(1), ["Watch begins"]);
     assert_eq!(running.stop().calls("local", "Watch"), 1);
 }
 
 #[test]
 fn a_chart_reports_durations_of_steps_and_calls() {
-    let scene = PoolScene::new();
-    let running = scene.start(same, "m = A . B");
-    assert_eq!(scene.next(2), ["A", "B"]);
+    let fixture = PoolFixture::new();
+    let running = fixture.start(same, "m = A . B");
+    assert_eq!(fixture.next(2), ["A", "B"]);
     let statistics = running.stop();
     let agent = &statistics.agents[0];
     assert_eq!(agent.cycle_time.map(|time| time.count()), Some(agent.cycles));

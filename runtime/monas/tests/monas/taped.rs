@@ -60,13 +60,13 @@ impl Outcome {
     }
 }
 
-fn company(messages: &[Kept]) -> Vec<RecordedPublisher> {
+fn publishers(messages: &[Kept]) -> Vec<RecordedPublisher> {
     let mut names: Vec<(&str, &str)> =
         messages.iter().map(|kept| (kept.host.as_str(), kept.publisher.as_str())).collect();
     names.sort_unstable();
     names.dedup();
     let parts = messages.iter();
-    let company = |(host, publisher): (&str, &str)| RecordedPublisher {
+    let recorded = |(host, publisher): (&str, &str)| RecordedPublisher {
         host: host.into(),
         publisher: publisher.into(),
         is_agent: !["monas", "outside"].contains(&publisher),
@@ -77,17 +77,17 @@ fn company(messages: &[Kept]) -> Vec<RecordedPublisher> {
             .max()
             .unwrap_or(0),
     };
-    names.into_iter().map(company).collect()
+    names.into_iter().map(recorded).collect()
 }
 
 /// Replays agents on a recording of real time.
 pub(crate) fn replay(talws: Talws, messages: &[Kept]) -> Result<Outcome, Error> {
-    play(talws.replay_real_time(&company(messages))?, messages)
+    play(talws.replay_real_time(&publishers(messages))?, messages)
 }
 
 /// Replays agents on a recording of simulated time.
 pub(crate) fn replay_simulated(talws: Talws, seed: u64, messages: &[Kept]) -> Result<Outcome, Error> {
-    play(talws.replay(seed, &company(messages))?, messages)
+    play(talws.replay(seed, &publishers(messages))?, messages)
 }
 
 fn play(mut replay: Replay, messages: &[Kept]) -> Result<Outcome, Error> {
