@@ -62,12 +62,12 @@ impl ChartRunner {
         let report = machine.swap(&plan).map_err(reasons)?;
         let monitors = swap.monitors;
         let home = self.chart_context(&agent, &listeners, now);
-        let desk =
+        let host =
             ChartHost::new(&chart, home, functions, activities).map_err(|error| vec![error.to_string()])?;
         let known = |old: Activation| {
             report.activations.iter().find(|(known, _)| *known == old).map(|(_, activation)| *activation)
         };
-        let old = std::mem::replace(&mut self.host, desk);
+        let old = std::mem::replace(&mut self.host, host);
         self.host.take_over(old, &report.regions, known, |node| plan.node(node));
         self.machine = machine;
         if let Some(monitors) = monitors {
