@@ -26,7 +26,7 @@ const LIMIT: usize = 40;
 
 #[test]
 fn a_flat_chart_does_what_the_machine_does() {
-    let (mut flat_ones, mut deeds, mut questions, mut together) = (0, 0, 0, 0);
+    let (mut flat_ones, mut actions, mut questions, mut together) = (0, 0, 0, 0);
     let charts = CHARTS[usize::from(std::env::var_os("MONAS_LONG_TESTS").is_some())];
     for number in 0..charts {
         let mut case = Case::numbered(number);
@@ -54,15 +54,15 @@ fn a_flat_chart_does_what_the_machine_does() {
             yase_export::to_mermaid(&chart).text
         );
         flat_ones += 1;
-        deeds += expected.iter().map(|line| line.deeds.len()).sum::<usize>();
+        actions += expected.iter().map(|line| line.actions.len()).sum::<usize>();
         questions += usize::from(flat.conditions.len() > 1);
         together += usize::from(flat.states.iter().any(|state| state.leaves.len() > 1));
     }
     println!(
-        "{flat_ones} flat charts, {deeds} actions, {questions} with conditions, {together} with regions"
+        "{flat_ones} flat charts, {actions} actions, {questions} with conditions, {together} with regions"
     );
     let least = |of_4000: u64| of_4000 * charts / 4_000;
-    assert!(flat_ones > charts / 4 && deeds as u64 > least(5_000), "{flat_ones} charts, {deeds} actions");
+    assert!(flat_ones > charts / 4 && actions as u64 > least(5_000), "{flat_ones} charts, {actions} actions");
     assert!(questions as u64 > least(200) && together as u64 > least(100), "{questions}, {together}");
 }
 
@@ -76,7 +76,7 @@ fn named(input: &Input) -> Option<String> {
 /// The observable part of a step.
 #[derive(Clone, PartialEq, Debug)]
 struct Line {
-    deeds: Vec<String>,
+    actions: Vec<String>,
     active: Vec<String>,
 }
 
@@ -147,16 +147,16 @@ struct TestHost<'c> {
     chart: &'c CompiledChart,
     seed: u64,
     step: usize,
-    deeds: Vec<String>,
+    actions: Vec<String>,
 }
 
 impl Host for TestHost<'_> {
     fn condition(&self, script: ScriptId, _: ScopeId, _: &ActiveStates<'_>) -> Result<bool, CallError> {
-        Ok(holds(self.chart.script(script), self.seed, self.step, self.deeds.len()))
+        Ok(holds(self.chart.script(script), self.seed, self.step, self.actions.len()))
     }
 
     fn perform(&mut self, script: ScriptId, _: ScopeId, _: &mut ScriptContext<'_>) -> Result<(), CallError> {
-        self.deeds.push(self.chart.script(script).to_owned());
+        self.actions.push(self.chart.script(script).to_owned());
         Ok(())
     }
 
@@ -170,26 +170,26 @@ impl Host for TestHost<'_> {
 /// The behaviour of the machine.
 fn play(chart: &Arc<CompiledChart>, flat: &FlatMachine, events: &[String], seed: u64) -> Vec<Line> {
     let mut machine = Machine::new(chart.clone());
-    let mut host = TestHost { chart, seed, step: 0, deeds: Vec::new() };
+    let mut host = TestHost { chart, seed, step: 0, actions: Vec::new() };
     machine.start(Timestamp::ZERO, &mut host);
     machine.run_to_completion(Timestamp::ZERO, &mut host).expect("it comes to rest");
-    let mut lines = vec![line(&machine, flat, std::mem::take(&mut host.deeds))];
+    let mut lines = vec![line(&machine, flat, std::mem::take(&mut host.actions))];
     for (event, step) in events.iter().zip(1..) {
         host.step = step;
         let now = Timestamp::from_nanos(step as u64);
         machine.dispatch_name(event);
         machine.run_to_completion(now, &mut host).expect("it comes to rest");
-        lines.push(line(&machine, flat, std::mem::take(&mut host.deeds)));
+        lines.push(line(&machine, flat, std::mem::take(&mut host.actions)));
     }
     lines
 }
 
-fn line(machine: &Machine, flat: &FlatMachine, deeds: Vec<String>) -> Line {
+fn line(machine: &Machine, flat: &FlatMachine, actions: Vec<String>) -> Line {
     let configuration = machine.configuration();
     let runs = machine.status() == Status::Running;
     let state =
         flat.states.iter().find(|state| runs && !state.is_over && state.configuration == configuration);
-    Line { deeds, active: state.map_or_else(Vec::new, |state| state.leaves.clone()) }
+    Line { actions, active: state.map_or_else(Vec::new, |state| state.leaves.clone()) }
 }
 
 /// The behaviour of the flattened chart.
@@ -213,20 +213,20 @@ fn walk(chart: &CompiledChart, flat: &FlatMachine, events: &[String], seed: u64)
 }
 
 fn follow(flat: &FlatMachine, way: &FlatPath, (seed, step): (u64, usize), lines: &mut Vec<Line>) -> usize {
-    let mut deeds: Vec<String> = Vec::new();
+    let mut actions: Vec<String> = Vec::new();
     let (mut way, mut index) = (way, 0);
     while let Some(piece) = way.pieces.get(index) {
         index += 1;
         match piece {
-            FlatOp::Do(action) => deeds.push(flat.actions[*action].clone()),
+            FlatOp::Do(action) => actions.push(flat.actions[*action].clone()),
             FlatOp::If(condition, other) => {
-                if holds(&flat.conditions[*condition], seed, step, deeds.len()) {
+                if holds(&flat.conditions[*condition], seed, step, actions.len()) {
                     (way, index) = (other, 0);
                 }
             }
         }
     }
-    lines.push(Line { deeds, active: flat.states[way.to].leaves.clone() });
+    lines.push(Line { actions, active: flat.states[way.to].leaves.clone() });
     way.to
 }
 
@@ -264,7 +264,7 @@ mod written;
 struct Surroundings {
     ready: bool,
     tired: bool,
-    deeds: Vec<&'static str>,
+    actions: Vec<&'static str>,
 }
 
 impl written::Host for Surroundings {
@@ -277,15 +277,15 @@ impl written::Host for Surroundings {
     }
 
     fn leave_a(&mut self) {
-        self.deeds.push("leave A");
+        self.actions.push("leave A");
     }
 
     fn move_(&mut self) {
-        self.deeds.push("move");
+        self.actions.push("move");
     }
 
     fn stop(&mut self) {
-        self.deeds.push("stop");
+        self.actions.push("stop");
     }
 }
 
@@ -305,7 +305,7 @@ fn a_chart_that_was_written_as_rust_runs() {
     assert_eq!(state.active(), ["both/one/A", "both/two/C"]);
     state.handle(Go, &mut host);
     assert_eq!(
-        (state.active(), host.deeds.as_slice()),
+        (state.active(), host.actions.as_slice()),
         (["both/one/A", "both/two/C"].as_slice(), [].as_slice())
     );
     host.ready = true;
@@ -314,7 +314,7 @@ fn a_chart_that_was_written_as_rust_runs() {
     state.handle(Stop, &mut host);
     state.handle(Back, &mut host);
     assert_eq!(state.active(), ["both/one/A", "both/two/D"], "the second region remembers");
-    assert_eq!(host.deeds, ["leave A", "move", "stop"]);
+    assert_eq!(host.actions, ["leave A", "move", "stop"]);
     host.tired = true;
     state.handle(Stop, &mut host);
     assert_eq!(state.active(), ["Z"]);
