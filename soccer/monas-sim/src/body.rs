@@ -78,7 +78,7 @@ impl SimulatedBody {
         self.elapsed += STEP;
         self.turn_head(physics);
         self.forget_untimely_skill(held);
-        let deed = match self.phase {
+        let event = match self.phase {
             BodyPhase::Standing | BodyPhase::Walking => self.follow_command(physics, held),
             BodyPhase::Kicking(foot) => self.kick(foot, physics),
             BodyPhase::SideFalling(side) => self.go_down(side, physics.side_fall_reach, physics),
@@ -93,7 +93,7 @@ impl SimulatedBody {
         let step = Pose { position: felt.linear() * STEP, heading: felt.turn * STEP };
         self.odometry = self.odometry.compose(&step);
         self.tilt_torso(physics);
-        deed
+        event
     }
 
     /// The velocity that the feet produce without obstacles.
@@ -333,10 +333,10 @@ mod tests {
     fn a_dive_covers_its_reach_and_stays_down_until_commanded() {
         let physics = Physics::default();
         let mut body = body(Motion::Dive(Side::Right));
-        let deeds = run(&mut body, 3.0);
-        assert_eq!(deeds.first(), Some(&BodyEvent::Act { side: Side::Right, dive: true }));
+        let events = run(&mut body, 3.0);
+        assert_eq!(events.first(), Some(&BodyEvent::Act { side: Side::Right, dive: true }));
         let down = BallObstacle::Lying { direction: Vector::new(0.0, -1.0), reach: physics.dive_reach };
-        assert_eq!(deeds.last(), Some(&BodyEvent::Rebase(down)));
+        assert_eq!(events.last(), Some(&BodyEvent::Rebase(down)));
         assert_eq!(body.phase, BodyPhase::Fallen(Direction::Right));
         body.command.motion = Motion::Walk(Velocity::new(0.2, 0.0, 0.0));
         run(&mut body, 1.0);

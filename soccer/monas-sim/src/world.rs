@@ -290,8 +290,8 @@ impl SimulatedWorld {
     fn move_body(&mut self, robot: usize) {
         let on_field = self.now.robots[robot].on_field;
         let held = self.referee.holds_robots() || !on_field;
-        let deed = self.bodies[robot].advance(&self.now.physics, held);
-        match deed {
+        let event = self.bodies[robot].advance(&self.now.physics, held);
+        match event {
             Some(BodyEvent::Strike(foot)) => self.kick_ball(robot, foot),
             Some(BodyEvent::Act { side, dive }) => self.note_act(robot, side, dive),
             Some(BodyEvent::Rebase(base)) => self.arena.set_base(robot, base),
