@@ -1,5 +1,5 @@
-//! Kinematics of a Nao: where feet, hands and cameras are for given joint angles, and the angles
-//! that put them there.
+//! Kinematics of a Nao: where feet and cameras are for given joint angles, and the angles that put
+//! the feet there.
 //!
 //! Frames have x ahead, y to the left and z up. The origin of the torso's frame is the torso's;
 //! that of a foot is on its sole, below the ankle. One motor turns both hips about axes inclined by
@@ -11,20 +11,8 @@ use nalgebra::{Isometry3, Translation3, UnitQuaternion, UnitVector3, Vector3};
 use crate::anatomy::{NaoJoint, anatomy, links};
 use crate::lola::JOINTS;
 
-/// From the torso up to the neck, m. This and the following lengths are those of the
+/// From the torso to the left hip, m. This and the following lengths are those of the
 /// [`anatomy`](crate::anatomy()); a test compares them.
-const NECK_Z: f64 = 0.1265;
-/// From the torso to the left shoulder.
-const SHOULDER: Vector3<f64> = Vector3::new(0.0, 0.098, 0.1);
-/// From the shoulder to the elbow.
-const UPPER_ARM: f64 = 0.105;
-/// From the shoulder to the elbow, to the side.
-const ELBOW_Y: f64 = 0.015;
-/// From the elbow to the wrist.
-const LOWER_ARM: f64 = 0.055_95;
-/// From the wrist to the hand.
-const HAND: Vector3<f64> = Vector3::new(0.057_75, 0.0, -0.012_31);
-/// From the torso to the left hip.
 pub(crate) const HIP: Vector3<f64> = Vector3::new(0.0, 0.05, -0.085);
 /// From the hip to the knee.
 const THIGH: f64 = 0.1;
@@ -109,23 +97,6 @@ pub fn foot_in_torso(side: Side, angles: &JointAngles) -> Isometry3<f64> {
         * down(FOOT_HEIGHT)
 }
 
-/// The pose of a hand in the torso's frame.
-pub fn hand_in_torso(side: Side, angles: &JointAngles) -> Isometry3<f64> {
-    let wrist = angles[side.arm() + 4];
-    wrist_in_torso(side, angles) * roll(wrist) * Translation3::from(mirrored(HAND, side))
-}
-
-fn wrist_in_torso(side: Side, angles: &JointAngles) -> Isometry3<f64> {
-    let arm = side.arm();
-    Translation3::from(mirrored(SHOULDER, side))
-        * pitch(angles[arm])
-        * yaw(angles[arm + 1])
-        * Translation3::new(UPPER_ARM, side.sign() * ELBOW_Y, 0.0)
-        * roll(angles[arm + 2])
-        * yaw(angles[arm + 3])
-        * Translation3::new(LOWER_ARM, 0.0, 0.0)
-}
-
 impl NaoCamera {
     /// The camera in the anatomy.
     pub fn description(self) -> &'static Camera {
@@ -143,14 +114,6 @@ pub fn camera_in_torso(camera: NaoCamera, angles: &JointAngles) -> Isometry3<f64
 pub fn camera_tilt(camera: NaoCamera) -> f64 {
     let sight = camera_in_torso(camera, &[0.0; JOINTS]).rotation * Vector3::x();
     -libm::asin(sight.z)
-}
-
-/// Sets yaw and pitch of the head so that the line from the neck through the head points at `point`
-/// in the torso's frame.
-pub fn face(point: Vector3<f64>, angles: &mut JointAngles) {
-    let line = point - Vector3::new(0.0, 0.0, NECK_Z);
-    angles[NaoJoint::HeadYaw as usize] = libm::atan2(line.y, line.x);
-    angles[NaoJoint::HeadPitch as usize] = libm::atan2(-line.z, libm::hypot(line.x, line.y));
 }
 
 /// Sets the joints of a leg, except the one that both legs share, so that the ankle and the plane
@@ -213,39 +176,6 @@ pub fn place_foot_and_toes(side: Side, foot: &Isometry3<f64>, angles: &mut Joint
     }
     let (error_now, reached) = error(now);
     reached && error_now.abs() < 1e-6
-}
-
-/// Sets shoulder and elbow of an arm so that the wrist is at `wrist` in the torso's frame and the
-/// upper arm turned by `elbow_yaw`. Returns whether the arm reaches it.
-///
-/// With the elbow's yaw given, its roll follows from the distance, then the shoulder's roll from
-/// the height above the plane in which the arm swings, then the shoulder's pitch.
-pub fn place_wrist(side: Side, wrist: Vector3<f64>, elbow_yaw: f64, angles: &mut JointAngles) -> bool {
-    let arm = side.arm();
-    let line = wrist - mirrored(SHOULDER, side);
-    let offset = Vector3::new(UPPER_ARM, side.sign() * ELBOW_Y, 0.0);
-    let twist = roll(elbow_yaw);
-    // |offset + twist * yaw(q) * (LOWER_ARM, 0, 0)|^2 = |line|^2, solved for q: a cos q + b sin q = c
-    let (along, across) = (offset.x, offset.dot(&(twist * Vector3::y())));
-    let c = (line.norm_squared() - offset.norm_squared() - LOWER_ARM * LOWER_ARM) / (2.0 * LOWER_ARM);
-    let size = libm::hypot(along, across);
-    let reaches_elbow = c.abs() <= size;
-    let spread = libm::acos((c / size).clamp(-1.0, 1.0));
-    // The elbow bends inwards: to the right on the left arm.
-    let elbow_roll = wrapped(libm::atan2(across, along) - side.sign() * spread);
-    let upper = offset + twist * (yaw(elbow_roll) * Vector3::new(LOWER_ARM, 0.0, 0.0));
-    // line = pitch(p) * yaw(r) * upper; y is not changed by the pitch: sin r * x + cos r * y =
-    // line.y
-    let size = libm::hypot(upper.x, upper.y);
-    let reaches_shoulder = line.y.abs() <= size;
-    let shoulder_roll = wrapped(libm::asin((line.y / size).clamp(-1.0, 1.0)) - libm::atan2(upper.y, upper.x));
-    let turned = yaw(shoulder_roll) * upper;
-    let shoulder_pitch = wrapped(libm::atan2(line.x, line.z) - libm::atan2(turned.x, turned.z));
-    angles[arm] = shoulder_pitch;
-    angles[arm + 1] = shoulder_roll;
-    angles[arm + 2] = elbow_yaw;
-    angles[arm + 3] = elbow_roll;
-    reaches_elbow && reaches_shoulder
 }
 
 /// The direction of the x axis of a pose in the plane, rad.
@@ -312,7 +242,8 @@ mod tests {
         let zero = [0.0; JOINTS];
         let foot = foot_in_torso(Side::Left, &zero);
         assert!((foot.translation.vector - Vector3::new(0.0, 0.05, -0.333_09)).norm() < 1e-12, "{foot}");
-        let hand = hand_in_torso(Side::Right, &zero);
+        let hand = anatomy().link("RFingers").unwrap();
+        let hand = links().pose_in_torso(hand, Isometry3::identity(), &zero);
         assert!((hand.translation.vector - Vector3::new(0.218_7, -0.113, 0.087_69)).norm() < 1e-12, "{hand}");
         let camera = camera_in_torso(NaoCamera::Top, &zero);
         assert!((camera.translation.vector - Vector3::new(0.058_71, 0.0, 0.190_14)).norm() < 1e-12);
@@ -328,7 +259,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn feet_hands_and_neck_are_where_the_anatomy_has_them(angles in angles()) {
+        fn feet_are_where_the_anatomy_has_them(angles in angles()) {
             let check = |side: &str, link: &str, pose: Isometry3<f64>| {
                 let link = anatomy().link(&[side, link].concat()).unwrap();
                 let other = links().pose_in_torso(link, Isometry3::identity(), &angles);
@@ -337,12 +268,7 @@ mod tests {
             };
             for (side, letter) in [(Side::Left, "L"), (Side::Right, "R")] {
                 prop_assert!(check(letter, "Sole", foot_in_torso(side, &angles)));
-                let mut open = hand_in_torso(side, &angles);
-                open.rotation *= pitch(angles[if side == Side::Left { 23 } else { 24 }]);
-                prop_assert!(check(letter, "Fingers", open));
             }
-            let neck = Isometry3::from_parts(Translation3::new(0.0, 0.0, NECK_Z), yaw(angles[0]));
-            prop_assert!(check("", "Neck", neck));
         }
 
         #[test]
@@ -368,25 +294,6 @@ mod tests {
             let reached = foot_in_torso(side, &found);
             prop_assert!((reached.translation.vector - foot.translation.vector).norm() < 1e-6);
             prop_assert!(reached.rotation.angle_to(&foot.rotation) < 1e-5);
-        }
-
-        #[test]
-        fn the_inverse_of_an_arm_reaches_the_wrist(given in angles(), left: bool) {
-            let side = if left { Side::Left } else { Side::Right };
-            let wrist = wrist_in_torso(side, &given).translation.vector;
-            let mut found = [0.0; JOINTS];
-            prop_assert!(place_wrist(side, wrist, given[side.arm() + 2], &mut found));
-            let reached = wrist_in_torso(side, &found).translation.vector;
-            prop_assert!((reached - wrist).norm() < 1e-6, "{reached} {wrist}");
-        }
-
-        #[test]
-        fn the_head_faces_the_point_it_is_given(given in angles(), distance in 0.1..5.0) {
-            let neck = Translation3::new(0.0, 0.0, NECK_Z);
-            let head = neck * yaw(given[0]) * pitch(given[1]);
-            let mut found = [0.0; JOINTS];
-            face((head * nalgebra::Point3::new(distance, 0.0, 0.0)).coords, &mut found);
-            prop_assert!(wrapped(found[0] - given[0]).abs() < 1e-9 && (found[1] - given[1]).abs() < 1e-9);
         }
 
         #[test]
