@@ -55,11 +55,6 @@ impl Effectors {
         self.write(format_args!("(beam {x} {y} {})", heading.to_degrees()));
     }
 
-    /// Says a message of at most ten bytes, in base64, with a volume in percent.
-    pub fn say(&mut self, volume: f64, message: &str) {
-        self.write(format_args!("(SPK say {volume} {message})"));
-    }
-
     /// Does nothing; the server waits for a message of each agent in its synchronous mode.
     pub fn synchronize(&mut self) {
         self.text.push_str("(syn)");
@@ -95,11 +90,10 @@ mod tests {
         );
         message.motor(&T1, 22, &MotorCommand { velocity: -angle, torque: 1.5, ..MotorCommand::default() });
         message.beam(-2.0, 0.5, -angle);
-        message.say(100.0, "YQ==");
         message.synchronize();
         let written = std::str::from_utf8(message.as_bytes()).unwrap();
         let expected = "(he2 180.000 0.000 25 0.6 0)(rle6 0.000 -180.000 0 0 1.5)\
-            (beam -2 0.5 -180)(SPK say 100 YQ==)(syn)";
+            (beam -2 0.5 -180)(syn)";
         assert_eq!(written, expected);
     }
 }

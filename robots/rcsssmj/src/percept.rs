@@ -3,11 +3,11 @@
 use std::f64::consts::PI;
 
 use crate::error::Error;
-use crate::expression::{Item, Items};
+use crate::expression::Items;
 use crate::humanoid::{Humanoid, JointValues};
 
 /// The percepts of a cycle, in SI units. It is reused: what a message does not hold keeps its
-/// value, except for sights and sounds.
+/// value, except for sights.
 #[derive(Clone, PartialEq, Debug, Default)]
 pub struct Percept {
     /// The time of the server, s.
@@ -30,8 +30,6 @@ pub struct Percept {
     pub has_sights: bool,
     /// What the camera sees.
     pub sights: Vec<Sight>,
-    /// What was heard.
-    pub sounds: Vec<Sound>,
 }
 
 /// The state of the game as all players know it.
@@ -178,15 +176,6 @@ pub enum Sight {
     },
 }
 
-/// A message of a player that was heard.
-#[derive(Clone, PartialEq, Debug)]
-pub struct Sound {
-    /// From where, rad, positive to the left.
-    pub azimuth: f64,
-    /// The message, in base64 as the server sends it.
-    pub message: String,
-}
-
 impl Percept {
     /// Reads a message to a robot. An unknown percept is passed over: robots differ in what they
     /// perceive.
@@ -197,7 +186,6 @@ impl Percept {
     pub fn decode(&mut self, message: &[u8], robot: &Humanoid) -> Result<(), Error> {
         self.has_sights = false;
         self.sights.clear();
-        self.sounds.clear();
         let mut percepts = Items::of(message)?;
         while let Some((kind, content)) = percepts.next_named() {
             self.decode_percept(kind, content, robot).ok_or_else(|| {
@@ -229,14 +217,6 @@ impl Percept {
                 self.has_sights = true;
                 while let Some((name, object)) = content.next_named() {
                     self.sights.push(sight(name, object)?);
-                }
-            }
-            b"MIC" => {
-                content.word()?;
-                for sound in content {
-                    let Item::List(mut sound) = sound else { return None };
-                    let (azimuth, message) = (radians(sound.number()?), text(sound.word()?)?);
-                    self.sounds.push(Sound { azimuth, message: message.to_owned() });
                 }
             }
             _ => {}
@@ -365,15 +345,14 @@ mod tests {
             Sight::Robot { team: "Red".into(), number: 3, at: at(5.1, 1.0, -12.0) },
         ];
         assert_eq!((percept.has_sights, &percept.sights[..]), (true, &expected[..]));
-        assert_eq!(percept.sounds[1], Sound { azimuth: -PI, message: "Yg==".into() });
     }
 
     #[test]
-    fn what_a_message_leaves_out_stays_except_sights_and_sounds() {
+    fn what_a_message_leaves_out_stays_except_sights() {
         let mut percept = read(TEXT).unwrap();
         percept.decode(b"(time (now 4.19))", &T1).unwrap();
         assert_eq!((percept.time, percept.game.left_score), (4.19, 2));
-        assert!(!percept.has_sights && percept.sights.is_empty() && percept.sounds.is_empty());
+        assert!(!percept.has_sights && percept.sights.is_empty());
         percept.decode(b"(See )", &T1).unwrap();
         assert!(percept.has_sights, "a camera that sees nothing has looked");
     }
@@ -387,7 +366,6 @@ mod tests {
             ("HJ", "(HJ (n q_hj1)(ax 1))"),
             ("See", "(See (B (pol 1 2)))"),
             ("See", "(See (P (team A)(id 2)))"),
-            ("MIC", "(MIC hear 30)"),
         ] {
             assert_eq!(read(text).unwrap_err().to_string(), format!("a percept `{kind}` is not understood"));
         }
