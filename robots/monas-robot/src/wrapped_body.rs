@@ -23,7 +23,7 @@ pub struct Disturbances {
 /// A body around which commands are limited and delayed, and percepts are noisy and get lost.
 ///
 /// The same seed gives the same disturbances. Commands in the plane beyond the limits of the
-/// anatomy are clamped here, and counted.
+/// anatomy are clamped here.
 pub struct WrappedBody {
     body: Box<dyn Robot>,
     disturbances: Disturbances,
@@ -31,7 +31,6 @@ pub struct WrappedBody {
     /// Commands that take effect at a later time.
     delayed: VecDeque<(Timestamp, Actuators)>,
     rests: bool,
-    clamped: u64,
     colours: Option<FieldColours>,
 }
 
@@ -40,7 +39,7 @@ impl WrappedBody {
     pub fn new(body: Box<dyn Robot>, disturbances: Disturbances, seed: u64) -> WrappedBody {
         let random = Pcg64::seed_from_u64(seed);
         let delayed = VecDeque::new();
-        WrappedBody { body, disturbances, random, delayed, rests: false, clamped: 0, colours: None }
+        WrappedBody { body, disturbances, random, delayed, rests: false, colours: None }
     }
 
     /// The body with these colours in its images, for the calibration to begin with.
@@ -49,13 +48,7 @@ impl WrappedBody {
         WrappedBody { colours, ..self }
     }
 
-    /// The number of commands in the plane that had a value beyond the limits of the anatomy, or
-    /// one that is not finite.
-    pub fn clamped(&self) -> u64 {
-        self.clamped
-    }
-
-    fn limited(&mut self, actuators: &Actuators) -> Actuators {
+    fn limited(&self, actuators: &Actuators) -> Actuators {
         let anatomy = self.body.anatomy();
         let mut limited = *actuators;
         let Actuators { walk_x, walk_y, walk_turn, head_yaw, head_pitch, .. } = &mut limited;
@@ -66,12 +59,9 @@ impl WrappedBody {
             (head_yaw, anatomy.head_yaw),
             (head_pitch, anatomy.head_pitch),
         ];
-        let mut is_clamped = false;
         for (value, limits) in values {
-            is_clamped |= !limits.contains(*value);
             *value = limits.clamp(*value);
         }
-        self.clamped += u64::from(is_clamped);
         limited
     }
 
@@ -262,11 +252,10 @@ mod tests {
     }
 
     #[test]
-    fn commands_beyond_the_limits_are_clamped_and_counted() {
+    fn commands_beyond_the_limits_are_clamped() {
         let mut body = wrapped(Disturbances::default(), 7);
         assert_eq!(run(&mut body, 9.0)[0].0, 2.0857);
-        assert_eq!((run(&mut body, f64::NAN)[0].0, body.clamped()), (0.0, 2));
-        run(&mut body, 0.1);
-        assert_eq!(body.clamped(), 2);
+        assert_eq!(run(&mut body, f64::NAN)[0].0, 0.0);
+        assert_eq!(run(&mut body, 0.1)[0].0, 0.1);
     }
 }
