@@ -56,3 +56,22 @@ pub(crate) fn watch(
     // An interrupt is the usual way to stop watching, not a failure.
     Ok(Exit::Success)
 }
+
+#[cfg(test)]
+mod tests {
+    use clap::{Args, Command, FromArgMatches};
+
+    use super::*;
+
+    #[test]
+    fn a_length_has_the_units_of_configurations() {
+        let read = |length: &str| {
+            let command = WatchLimits::augment_args(Command::new("watch"));
+            let matches = command.try_get_matches_from(["watch", "--for", length])?;
+            WatchLimits::from_arg_matches(&matches).map(|limits| limits.length)
+        };
+        assert_eq!(read("1.5h").unwrap(), Some(Duration::from_secs(5400)));
+        let refused = read("1.5d").unwrap_err().to_string();
+        assert!(refused.contains("`d` is not a unit of time: use ns, us, ms, s, min or h"), "{refused}");
+    }
+}
