@@ -13,8 +13,8 @@ const UNITS: [(&str, u128); 6] = [
     ("h", 3_600_000_000_000),
 ];
 
-/// Parses a duration: a decimal number and `ns`, `us`, `ms`, `s`, `min` or `h`. The result is exact;
-/// fractions of a nanosecond are rounded.
+/// Parses a duration: a decimal number and `ns`, `us`, `ms`, `s`, `min` or `h`. The result is
+/// exact; fractions of a nanosecond are rounded.
 ///
 /// ```
 /// # use std::time::Duration;

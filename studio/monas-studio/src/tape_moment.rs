@@ -59,8 +59,8 @@ impl TapeMoment {
         fitting.map(|(_, (count, _))| count).sum()
     }
 
-    /// Brings the tables of agents and topics up to date. Each agent and each topic of a host is one
-    /// row, whatever number of publishers and channels it has.
+    /// Brings the tables of agents and topics up to date. Each agent and each topic of a host is
+    /// one row, whatever number of publishers and channels it has.
     pub(crate) fn set_tables(&mut self, tape: &TapeRun) {
         let mut topics: BTreeMap<(&str, &str), TopicRow<'_>> = BTreeMap::new();
         let mut known_agents = BTreeSet::new();
