@@ -81,7 +81,8 @@ impl Socket {
         Socket::connected(UnixStream::connect(path).map_err(|error| unanswered(path, &error))?)
     }
 
-    /// Connects to a path; none if nobody listens there. A process that was killed leaves its file.
+    /// Connects to a path; none if no process listens there. One that was killed leaves its
+    /// file.
     pub(crate) fn connect_if_served(path: &Path) -> Result<Option<Socket>, Error> {
         match UnixStream::connect(path) {
             Ok(stream) => Socket::connected(stream).map(Some),

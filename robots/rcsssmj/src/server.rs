@@ -150,8 +150,9 @@ impl Drop for Server {
     }
 }
 
-/// Creates a folder that only this user can access. Where one of that name exists, it gets a number:
-/// Python executes what is in it, and in the folder for temporary files others may have prepared it.
+/// Creates a folder that only this user can access. Where one of that name exists, it gets a
+/// number: Python executes what is in it, and in the folder for temporary files another user may
+/// have prepared it.
 fn private_folder(parent: &Path, name: &str) -> std::io::Result<PathBuf> {
     #[cfg_attr(not(unix), expect(unused_mut, reason = "there are no modes"))]
     let mut builder = std::fs::DirBuilder::new();

@@ -280,7 +280,8 @@ fn stuck_host(agent: AgentEntry) -> HostStatus {
 }
 
 impl ExternalRequests {
-    /// Submits a request and waits for its reply. Withdraws the request if the run does not take it.
+    /// Submits a request and waits for its reply. Withdraws the request if the run does not take
+    /// it in time.
     fn submit<T>(&self, what: impl FnOnce(SyncSender<T>) -> ExternalRequest) -> Result<T, String> {
         self.submit_within(PATIENCE, what)
     }

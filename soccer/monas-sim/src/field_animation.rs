@@ -282,7 +282,8 @@ impl FieldAnimation<'_> {
 struct RobotTrack {
     team: usize,
     number: u8,
-    /// At a moment that does not have the robot it is where it was before, or where it will be first.
+    /// At a moment that does not have the robot it is where it was before, or where it will be
+    /// first.
     robots: Vec<PicturedRobot>,
     /// The opacity at each moment.
     presences: Vec<&'static str>,
