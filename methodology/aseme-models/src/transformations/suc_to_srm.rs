@@ -20,8 +20,8 @@ use aseme::liveness;
 ///
 /// The participant of an AIP that is named after a role, or whose name contains `_role`, provides
 /// the formula of that name; of several roles that of its whole name or end, and the longest. A
-/// participant without a role becomes a capability with its formulas as description. A capability in
-/// which a role is never the first participant is reported (E0832).
+/// participant without a role becomes a capability with its formulas as description. A capability
+/// in which a role is never the first participant is reported (E0832).
 pub fn suc_to_srm(suc: &Suc, aip: Option<&Aip>) -> (SystemRoles, Vec<Diagnostic>) {
     let mut making = SrmBuilder { suc, srm: SystemRoles::default(), diagnostics: Vec::new() };
     let system = suc.roles.iter().enumerate().filter(|(_, role)| role.kind == RoleKind::System);
