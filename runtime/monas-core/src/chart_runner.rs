@@ -249,7 +249,7 @@ impl ChartRunner {
     }
 
     fn is_step_due(&self, now: Timestamp) -> bool {
-        self.machine.needs_step(yase_timestamp(now)) || self.tick() <= now
+        self.machine.needs_step(yase_timestamp(now)) || self.is_tick_due(now)
     }
 
     /// Steps and calls activities until nothing is left to do at this time.
@@ -359,7 +359,7 @@ impl ChartRunner {
     }
 
     fn step_and_record(&mut self, driver: &mut impl ChartDriver, now: Timestamp) -> Result<(), ChartError> {
-        while self.tick() <= now && self.tick() < Timestamp::MAX {
+        while self.is_tick_due(now) {
             self.ticks += 1;
         }
         let stepped = self.step(now);

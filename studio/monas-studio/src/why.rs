@@ -92,7 +92,7 @@ impl TapeRun {
     }
 
     /// Checks that a chart was not replaced among the first `count` messages: the numbers in its
-    /// later records are those of another chart.
+    /// later records are those of another chart. One with other guards has the same numbers.
     ///
     /// # Errors
     /// When it was replaced.
@@ -103,7 +103,8 @@ impl TapeRun {
                 channel.topic == MODEL && channel.host == chart.host && channel.publisher == chart.agent;
             let model = is_own.then(|| Model::decode(self.bytes(entry)).ok()).flatten();
             let Some(model) = model.filter(|model| model.chart == chart.chart) else { continue };
-            if first.get_or_insert_with(|| model.clone()) != &model {
+            let first = first.get_or_insert_with(|| model.clone());
+            if (&first.nodes, first.transitions.len()) != (&model.nodes, model.transitions.len()) {
                 let time = seconds(entry.time);
                 let agent = &chart.agent;
                 return Err(format!(

@@ -68,6 +68,11 @@ impl ChartRunner {
         self.frequency().map_or(Timestamp::MAX, |frequency| frequency.due(self.ticks))
     }
 
+    /// Whether a periodic step is due.
+    pub(crate) fn is_tick_due(&self, now: Timestamp) -> bool {
+        self.frequency().is_some() && self.tick() <= now
+    }
+
     /// Number of the next periodic step on the grid of the frequency.
     pub fn ticks(&self) -> u64 {
         self.ticks

@@ -291,8 +291,12 @@ fn the_safe_state_unloads_the_body_and_ignores_commands() {
     assert_eq!(acts, ["0 act 0.3", "10 act 0.3", "20 act 0"], "a body that cannot sit stands still");
     let stopped = simulation.statistics().agents[1].stopped.clone();
     assert_eq!(stopped.as_deref(), Some("activity `closure` failed in cycle 3: broken leg"));
-    let start = Change { action: Action::StartAgent.into(), agent: "a".into(), ..Change::default() };
-    let started = simulation.change("red-1", start).unwrap();
+    let mut ask = |action: Action| {
+        let change = Change { action: action.into(), agent: "a".into(), ..Change::default() };
+        simulation.change("red-1", change).unwrap()
+    };
+    ask(Action::StopAgent);
+    let started = ask(Action::StartAgent);
     let remarks: Vec<&str> = started.findings.iter().map(|finding| finding.message.as_str()).collect();
     let expected = "the body is in its safe state and ignores commands until the end of the run";
     assert_eq!((started.done, remarks), (true, vec![expected]));
