@@ -92,7 +92,8 @@ impl TapeRun {
     }
 
     /// Checks that a chart was not replaced among the first `count` messages: the numbers in its
-    /// later records are those of another chart. One with other guards has the same numbers.
+    /// later records are those of another chart. One with as many nodes and transitions is taken
+    /// for the same chart with other guards.
     ///
     /// # Errors
     /// When it was replaced.
@@ -104,7 +105,8 @@ impl TapeRun {
             let model = is_own.then(|| Model::decode(self.bytes(entry)).ok()).flatten();
             let Some(model) = model.filter(|model| model.chart == chart.chart) else { continue };
             let first = first.get_or_insert_with(|| model.clone());
-            if (&first.nodes, first.transitions.len()) != (&model.nodes, model.transitions.len()) {
+            let counts = |model: &Model| (model.nodes.len(), model.transitions.len());
+            if counts(first) != counts(&model) {
                 let time = seconds(entry.time);
                 let agent = &chart.agent;
                 return Err(format!(

@@ -275,7 +275,8 @@ impl<'a> ScenarioRun<'a> {
         self.run_until_stable(step)?;
         while !self.runner.is_over() {
             let due = self.runner.due(self.now);
-            if due > end {
+            // The last moment is that of an event that is never due.
+            if due > end || due == Timestamp::MAX {
                 break;
             }
             self.now = self.now.max(due);

@@ -67,9 +67,10 @@ fn moments_after_a_chart_was_replaced_are_not_explained() {
     hub.observe(Box::new(tape.clone()));
     let mut models = hub.publisher(records::MODEL, "Lamp").unwrap();
     let mut charts = hub.publisher(records::CHART, "Lamp").unwrap();
-    for (number, name) in [(1, "lamp"), (2, "lamp"), (3, "other")] {
+    for (number, nodes) in [(1, 4), (2, 4), (3, 5)] {
         let time = Timestamp::from_nanos(number * 1_000_000_000);
-        models.publish(records::Model { nodes: vec![name.into()], ..records::Model::default() }, time);
+        models
+            .publish(records::Model { nodes: vec![String::new(); nodes], ..records::Model::default() }, time);
         charts.publish(records::Chart { entries: vec![2], ..records::Chart::default() }, time);
     }
     tape.finish().unwrap();
