@@ -1,5 +1,6 @@
 //! The error type.
 
+use std::fmt;
 use std::io;
 use std::path::Path;
 
@@ -65,8 +66,14 @@ impl Error {
         Error { kind: ErrorKind::Finished, text: "the tape is finished".to_owned(), source: None }
     }
 
-    pub(crate) fn damaged(what: &str) -> Error {
+    pub(crate) fn damaged(what: impl fmt::Display) -> Error {
         Error { kind: ErrorKind::Damaged, text: format!("the tape is damaged: {what}"), source: None }
+    }
+
+    /// The error in a file.
+    pub(crate) fn of_file(self, path: Option<&Path>) -> Error {
+        let Some(path) = path else { return self };
+        Error { text: format!("{}: {}", path.display(), self.text), ..self }
     }
 
     pub(crate) fn compressed(with: &str) -> Error {

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::fmt;
 use std::fs;
 use std::ops::Range;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use narukom::{Publication, Timestamp};
@@ -30,6 +30,8 @@ pub fn read(path: impl AsRef<Path>) -> Result<Recording, Error> {
 #[derive(Clone, Debug)]
 pub struct Recording {
     bytes: Vec<u8>,
+    /// Its file, if it has one, for errors.
+    path: Option<PathBuf>,
 }
 
 impl Recording {
@@ -38,13 +40,14 @@ impl Recording {
     /// # Errors
     /// The file cannot be read.
     pub fn open(path: impl AsRef<Path>) -> Result<Recording, Error> {
-        let bytes = fs::read(path.as_ref()).map_err(|error| Error::file(path.as_ref(), error))?;
-        Ok(Recording::from_bytes(bytes))
+        let path = path.as_ref();
+        let bytes = fs::read(path).map_err(|error| Error::file(path, error))?;
+        Ok(Recording { bytes, path: Some(path.to_owned()) })
     }
 
     /// Uses the content of a file.
     pub fn from_bytes(bytes: Vec<u8>) -> Recording {
-        Recording { bytes }
+        Recording { bytes, path: None }
     }
 
     /// The messages in order of publication. Of a truncated file, those before the truncation; in a
@@ -62,13 +65,15 @@ impl Recording {
     /// # Errors
     /// The file is not an MCAP file.
     pub fn contents(&self) -> Result<RecordingItems<'_>, Error> {
+        let path = self.path.as_deref();
         let rest = self
             .bytes
             .strip_prefix(MAGIC)
-            .ok_or_else(|| Error::damaged("it does not begin as an MCAP file"))?;
+            .ok_or_else(|| Error::damaged("it does not begin as an MCAP file").of_file(path))?;
         let (schemas, channels, is_finished) = (BTreeMap::new(), BTreeMap::new(), self.is_finished());
         let rest = Bytes(rest);
-        let mut items = RecordingItems { rest, chunk: Bytes::default(), schemas, channels, is_finished };
+        let chunk = Bytes::default();
+        let mut items = RecordingItems { path, rest, chunk, schemas, channels, is_finished };
         // A finished tape repeats them, so that messages behind a damaged chunk are known.
         let mut summary = Bytes(self.summary().unwrap_or_default());
         while let Some(record) = summary.record() {
@@ -225,6 +230,8 @@ impl<'a> Iterator for Messages<'a> {
 
 /// All items of a [`Recording`].
 pub struct RecordingItems<'a> {
+    /// The file, for errors.
+    path: Option<&'a Path>,
     /// The unread part of the file.
     rest: Bytes<'a>,
     /// The unread part of the current chunk.
@@ -239,7 +246,7 @@ impl<'a> Iterator for RecordingItems<'a> {
     type Item = Result<RecordingItem<'a>, Error>;
 
     fn next(&mut self) -> Option<Self::Item> {
-        self.next_content().transpose()
+        self.next_content().map_err(|error| error.of_file(self.path)).transpose()
     }
 }
 
@@ -326,6 +333,9 @@ fn facts(body: Bytes<'_>) -> Result<MetadataEntry, Error> {
 
 fn attachment(body: Bytes<'_>) -> Result<Attachment<'_>, Error> {
     let file = body.attachment().ok_or_else(|| Error::damaged("an attachment is incomplete"))?;
+    if file.crc != 0 && crc32fast::hash(file.checked) != file.crc {
+        return Err(Error::damaged(format!("the checksum of the attachment `{}` is wrong", file.name)));
+    }
     Ok(Attachment { name: file.name, media_type: file.media_type, bytes: file.data })
 }
 

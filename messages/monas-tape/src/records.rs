@@ -51,6 +51,10 @@ pub(crate) struct AttachmentRecord<'a> {
     pub(crate) name: &'a str,
     pub(crate) media_type: &'a str,
     pub(crate) data: &'a [u8],
+    /// What the checksum covers: all fields before it.
+    pub(crate) checked: &'a [u8],
+    /// CRC-32; 0 if there is none.
+    pub(crate) crc: u32,
 }
 
 /// A message.
@@ -140,10 +144,12 @@ impl<'a> Bytes<'a> {
     }
 
     pub(crate) fn attachment(mut self) -> Option<AttachmentRecord<'a>> {
+        let all = self.0;
         let (_logged, _created) = (self.u64()?, self.u64()?);
         let (name, media_type, length) = (self.text()?, self.text()?, self.u64()?);
         let data = self.take(usize::try_from(length).ok()?)?;
-        Some(AttachmentRecord { name, media_type, data })
+        let checked = all.get(..all.len() - self.0.len())?;
+        Some(AttachmentRecord { name, media_type, data, checked, crc: self.u32()? })
     }
 
     /// Pairs of strings, as far as they are complete.

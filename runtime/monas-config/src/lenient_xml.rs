@@ -95,12 +95,23 @@ pub(crate) fn repair(source: &str) -> RepairedXml {
     writer.insert(&format!("<{ROOT}>"));
     // Some editors write a byte order mark.
     writer.at = source.len() - source.trim_start_matches('\u{feff}').len();
-    while writer.at < source.len() {
-        writer.item();
+    match is_without_elements(writer.rest()) {
+        true => writer.refuse(),
+        false => {
+            while writer.at < source.len() {
+                writer.item();
+            }
+        }
     }
     writer.close_down_to(0);
     writer.insert(&format!("</{ROOT}>"));
     writer.out
+}
+
+/// Whether it is the text of another language: each line of it would be a mistake of XML.
+fn is_without_elements(text: &str) -> bool {
+    let begins = text.trim_start();
+    !begins.is_empty() && !begins.starts_with('<') && !text.contains("</") && !text.contains("/>")
 }
 
 struct RepairWriter<'a> {
@@ -114,6 +125,16 @@ struct RepairWriter<'a> {
 }
 
 impl<'a> RepairWriter<'a> {
+    /// Reports a text of another language at its first line.
+    fn refuse(&mut self) {
+        let rest = self.rest();
+        let start = self.at + (rest.len() - rest.trim_start().len());
+        let line = self.source[start..].lines().next().unwrap_or_default().trim_end();
+        let hint = "XML begins with an element; the name of a configuration in TOML ends with `.toml`";
+        self.report(start..start + line.len(), "this is not XML", hint);
+        self.at = self.source.len();
+    }
+
     /// Reads one comment, declaration, tag or run of text.
     fn item(&mut self) {
         let rest = self.rest();

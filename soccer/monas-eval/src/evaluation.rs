@@ -8,6 +8,7 @@ use monas::Registry;
 use monas_match::{MatchOptions, MatchPlan, MatchSource};
 use monas_robot::{Actuators, Anatomy, Percepts, Robot};
 use narukom::Timestamp;
+use yase::Diagnostic;
 
 use crate::direct::{DirectGoalie, DirectPlayer, DirectRobot};
 use crate::sources::{self, SourceFigures};
@@ -97,11 +98,25 @@ pub struct Evaluation {
 
 /// A match that cannot be played.
 #[derive(Debug)]
-pub struct Error(String);
+pub enum Error {
+    /// A match file, or one it refers to, is missing or wrong.
+    Files(Vec<Diagnostic>),
+    /// The match ended early.
+    Match(monas_match::Error),
+    /// The match has not two teams.
+    Teams,
+}
 
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.0)
+        match self {
+            Error::Files(found) => {
+                let lines: Vec<String> = found.iter().map(ToString::to_string).collect();
+                f.write_str(&lines.join("\n"))
+            }
+            Error::Match(error) => error.fmt(f),
+            Error::Teams => f.write_str("a match has two teams"),
+        }
     }
 }
 
@@ -168,10 +183,9 @@ fn plan(
 /// Reads a match file.
 ///
 /// # Errors
-/// The first diagnostic of the file or of those it refers to.
+/// The diagnostics of the file and of those it refers to.
 pub fn load(path: &Path, registry: &Registry) -> Result<MatchPlan, Error> {
-    MatchSource::load(path, registry)
-        .map_err(|found| Error(found.first().map_or_else(|| path.display().to_string(), ToString::to_string)))
+    MatchSource::load(path, registry).map_err(Error::Files)
 }
 
 /// Builds the first team directly on its bodies: a goalie with the number 1, and attackers.
@@ -188,12 +202,11 @@ pub fn direct_players(plan: MatchPlan) -> MatchPlan {
 /// # Errors
 /// The match ends early.
 pub fn play(plan: MatchPlan, seed: u64, length: Duration) -> Result<PlayFigures, Error> {
-    let failed = |error: monas_match::Error| Error(error.to_string());
-    let mut running = plan.start(MatchOptions { seed, record: None }).map_err(failed)?;
-    running.advance(length).map_err(failed)?;
-    let summary = running.finish().map_err(failed)?;
+    let mut running = plan.start(MatchOptions { seed, record: None }).map_err(Error::Match)?;
+    running.advance(length).map_err(Error::Match)?;
+    let summary = running.finish().map_err(Error::Match)?;
     let [blue, red] = summary.teams.as_slice() else {
-        return Err(Error("a match has two teams".into()));
+        return Err(Error::Teams);
     };
     Ok(PlayFigures {
         goals: blue.goals,
@@ -245,12 +258,11 @@ fn measure(
     length: Duration,
     processor_time: &dyn Fn() -> Duration,
 ) -> Result<MatchCost, Error> {
-    let failed = |error: monas_match::Error| Error(error.to_string());
-    let mut running = plan.start(MatchOptions { seed, record: None }).map_err(failed)?;
+    let mut running = plan.start(MatchOptions { seed, record: None }).map_err(Error::Match)?;
     let (began, allocated) = (processor_time(), monas::memory::allocations());
-    running.advance(length).map_err(failed)?;
+    running.advance(length).map_err(Error::Match)?;
     let (ended, allocations) = (processor_time(), monas::memory::allocations() - allocated);
-    let messages = running.finish().map_err(failed)?.messages;
+    let messages = running.finish().map_err(Error::Match)?.messages;
     Ok(MatchCost { processor_time: ended.saturating_sub(began), allocations, messages })
 }
 

@@ -22,7 +22,9 @@ use std::time::Duration;
 
 use monas::config::{self, Attribute, Element, Grammar, Layers, Values};
 use monas_robot::ObjectSet;
-use monas_sim::{FieldGeometry, FieldSide, MatchRules, Physics, Radio, TeamColour, TeamSetup};
+use monas_sim::{
+    FieldGeometry, FieldSide, LineupError, LineupPart, MatchRules, Physics, Radio, TeamColour, TeamSetup,
+};
 use yase::{Diagnostic, Source, Span};
 
 use crate::grammar;
@@ -67,16 +69,17 @@ pub(crate) fn read(path: &Path, layers: &Layers, diagnostics: &mut Vec<Diagnosti
     let geometry = geometry(field, files.grammar, diagnostics);
     let (physics, mut rules, radio) =
         simulator.as_ref().map(|root| simulator_parts(root, files.grammar)).unwrap_or_default();
-    for (part, valid) in [("physics", physics.validate()), ("radio", radio.validate())] {
+    let values = Values::of(&root, files.grammar);
+    let objects = values.word("objects", &grammar::OBJECTS).unwrap_or_default();
+    set_half(&mut rules, values.duration("half"), &root, diagnostics);
+    let valid = [("physics", physics.validate()), ("rules", rules.validate()), ("radio", radio.validate())];
+    for (part, valid) in valid {
         if let Err(error) = valid {
             let element = simulator.as_ref().and_then(|root| root.children_named(part).last());
             let element = element.unwrap_or(&root);
             diagnostics.push(element.error("E0405", element.name_span(), error.to_string()));
         }
     }
-    let values = Values::of(&root, files.grammar);
-    let objects = values.word("objects", &grammar::OBJECTS).unwrap_or_default();
-    set_half(&mut rules, values.duration("half"), &root, diagnostics);
     let team = |team| read_team(team, path, files.grammar, diagnostics);
     let teams = root.children_named("team").filter_map(team).collect();
     let file = MatchFile { geometry, physics, rules, radio, objects, teams };
@@ -263,10 +266,7 @@ fn set_half(
     if let Some(half) = half
         && let Err(error) = rules.set("half_duration", half.as_secs_f64())
     {
-        diagnostics.push(root.error("E0402", root.name_span(), error.to_string()));
-    }
-    if let Err(error) = rules.validate() {
-        diagnostics.push(root.error("E0405", root.name_span(), error.to_string()));
+        diagnostics.push(at_value(None, root, "half", "E0402", error.to_string()));
     }
 }
 
@@ -311,14 +311,46 @@ fn check(file: &MatchFile, root: &Element, diagnostics: &mut Vec<Diagnostic>) {
     }
     let setups: Vec<TeamSetup> = file.teams.iter().map(|team| team.setup.clone()).collect();
     if let Err(error) = monas_sim::check_lineup(&setups, &file.lineup()) {
-        diagnostics.push(root.error("E0406", root.name_span(), error.to_string()));
+        diagnostics.push(lineup_diagnostic(root, &error));
     }
     if let [first, second] = &setups[..]
         && host_name(&first.name) == host_name(&second.name)
     {
         let message =
             format!("`{}` and `{}` are too alike: their robots would have one name", first.name, second.name);
-        diagnostics.push(root.error("E0407", root.name_span(), message));
+        diagnostics.push(at_value(team(root, 1), root, "name", "E0407", message));
+    }
+}
+
+/// A fault of the line-up, at the value that is wrong.
+fn lineup_diagnostic(root: &Element, error: &LineupError) -> Diagnostic {
+    let (element, key) = match error.part {
+        LineupPart::Match => (team(root, 2), ""),
+        LineupPart::Team(index, key) => (team(root, index), key),
+        LineupPart::Robot(index) => {
+            let mut robots = root.children_named("team").flat_map(|team| team.children_named("robot"));
+            (robots.nth(index), "number")
+        }
+    };
+    at_value(element, root, key, "E0406", error.to_string())
+}
+
+fn team(root: &Element, index: usize) -> Option<&Element> {
+    root.children_named("team").nth(index)
+}
+
+/// An error at a value of an element, or at the element or the root if there is none.
+fn at_value(
+    element: Option<&Element>,
+    root: &Element,
+    key: &str,
+    code: &'static str,
+    message: String,
+) -> Diagnostic {
+    let element = element.unwrap_or(root);
+    match element.attribute(key) {
+        Some(value) => value.error(code, message),
+        None => element.error(code, element.name_span(), message),
     }
 }
 
@@ -389,13 +421,32 @@ mod tests {
     }
 
     #[test]
+    fn faults_of_the_line_up_are_reported_at_their_values() {
+        let found = |red: &str, more: &str| {
+            let found = diagnostics_of(&format!(
+                "<match><team number='1' name='A' colour='blue' side='left'/>\n<team {red}/>{more}</match>",
+            ));
+            found.first().cloned().unwrap_or_default()
+        };
+        let red = "name='B' number='1' colour='red' side='right'";
+        assert_eq!(found(red, ""), "match.xml:2:24: error[E0406]: both teams have the number 1");
+        let red = "name='B' number='2' colour='blue' side='right'";
+        assert_eq!(found(red, ""), "match.xml:2:35: error[E0406]: both teams wear the same colour");
+        let red = "name='B' number='2' colour='red' side='left'";
+        assert_eq!(found(red, ""), "match.xml:2:46: error[E0406]: both teams play on the same side");
+        let red = "name='B' number='2' colour='red' side='right'";
+        let third = "\n<team name='C' number='3' colour='red' side='right'/>";
+        assert_eq!(found(red, third), "match.xml:3:2: error[E0406]: a match needs two teams, not 3");
+    }
+
+    #[test]
     fn teams_have_names_that_differ() {
         let found = diagnostics_of(
             "<match><team number='1' name='A b' colour='blue' side='left'/>\n<team number='2' name='a-B' colour='red' side='right'/></match>",
         );
         assert_eq!(found.len(), 1, "{found:#?}");
         assert!(
-            found[0].starts_with("match.xml:1:2: error[E0407]: `A b` and `a-B` are too alike"),
+            found[0].starts_with("match.xml:2:24: error[E0407]: `A b` and `a-B` are too alike"),
             "{found:#?}"
         );
     }

@@ -1,5 +1,7 @@
 //! Errors of setting up and accessing a world.
 
+use crate::lineup::LineupError;
+
 /// An error of this crate: a message for people and an [`ErrorKind`] for programs.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{message}")]
@@ -47,5 +49,11 @@ impl Error {
 
     pub(crate) fn unknown_robot(index: usize, count: usize) -> Self {
         Self::new(ErrorKind::UnknownRobot, format!("there is no robot {index}: the world has {count}"))
+    }
+}
+
+impl From<LineupError> for Error {
+    fn from(error: LineupError) -> Error {
+        Error::new(ErrorKind::Lineup, error.to_string())
     }
 }

@@ -124,7 +124,7 @@ pub use field_text::render_text;
 pub use fouls::Offence;
 pub use geometry::FieldGeometry;
 pub use lineup::check as check_lineup;
-pub use lineup::{FieldSide, GoalColour, RobotSetup, Side, TeamColour, TeamSetup};
+pub use lineup::{FieldSide, GoalColour, LineupError, LineupPart, RobotSetup, Side, TeamColour, TeamSetup};
 pub use parameters::Parameter;
 pub use physics::Physics;
 pub use pose::{Pose, Vector, Velocity, normalize_angle};

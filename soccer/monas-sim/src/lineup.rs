@@ -1,7 +1,5 @@
 //! The line-up: teams, robots, sides and colours.
 
-use crate::{Error, ErrorKind};
-
 /// An end of the field, and the goal there.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum FieldSide {
@@ -132,36 +130,60 @@ pub struct RobotSetup {
 /// The most robots that a team may have.
 pub(crate) const TEAM_SIZE: usize = 11;
 
+/// What is wrong in teams and robots, and where.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{message}")]
+pub struct LineupError {
+    /// The team or robot at fault.
+    pub part: LineupPart,
+    message: String,
+}
+
+/// The part of a line-up that is wrong.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum LineupPart {
+    /// The teams as a whole.
+    Match,
+    /// A value of a team, by its index: `number`, `colour` or `side`.
+    Team(usize, &'static str),
+    /// A robot, by its index.
+    Robot(usize),
+}
+
 /// Checks teams and robots, and returns the index of the team of each robot.
 ///
 /// # Errors
-/// [`Lineup`](crate::ErrorKind::Lineup) with a description of the fault.
-pub fn check(teams: &[TeamSetup], robots: &[RobotSetup]) -> Result<Vec<usize>, Error> {
+/// The first fault.
+pub fn check(teams: &[TeamSetup], robots: &[RobotSetup]) -> Result<Vec<usize>, LineupError> {
+    let wrong = |part, message: String| Err(LineupError { part, message });
     let [first, second] = teams else {
-        return Err(lineup_error(format!("a match needs two teams, not {}", teams.len())));
+        return wrong(LineupPart::Match, format!("a match needs two teams, not {}", teams.len()));
     };
     if first.number == second.number {
-        return Err(lineup_error(format!("both teams have the number {}", first.number)));
+        let part = LineupPart::Team(1, "number");
+        return wrong(part, format!("both teams have the number {}", first.number));
     }
-    if first.plays == second.plays || first.colour == second.colour {
-        return Err(lineup_error("both teams play on the same side or wear the same colour"));
+    if first.plays == second.plays {
+        return wrong(LineupPart::Team(1, "side"), "both teams play on the same side".into());
     }
-    robots.iter().enumerate().map(|(index, robot)| team_of(teams, &robots[..index], robot)).collect()
+    if first.colour == second.colour {
+        return wrong(LineupPart::Team(1, "colour"), "both teams wear the same colour".into());
+    }
+    let team = |(index, robot)| {
+        let of_robot = |message| LineupError { part: LineupPart::Robot(index), message };
+        team_of(teams, &robots[..index], robot).map_err(of_robot)
+    };
+    robots.iter().enumerate().map(team).collect()
 }
 
-fn lineup_error(message: impl Into<String>) -> Error {
-    Error::new(ErrorKind::Lineup, message)
-}
-
-fn team_of(teams: &[TeamSetup], before: &[RobotSetup], robot: &RobotSetup) -> Result<usize, Error> {
+fn team_of(teams: &[TeamSetup], before: &[RobotSetup], robot: &RobotSetup) -> Result<usize, String> {
     if !(1..=TEAM_SIZE).contains(&usize::from(robot.number)) {
-        return Err(lineup_error(format!("a robot has the number {}, not 1 to {TEAM_SIZE}", robot.number)));
+        return Err(format!("a robot has the number {}, not 1 to {TEAM_SIZE}", robot.number));
     }
     if before.contains(robot) {
-        return Err(lineup_error(format!("team {} has two robots {}", robot.team, robot.number)));
+        return Err(format!("team {} has two robots {}", robot.team, robot.number));
     }
-    let unknown =
-        || lineup_error(format!("robot {} is of team {}, which does not play", robot.number, robot.team));
+    let unknown = || format!("robot {} is of team {}, which does not play", robot.number, robot.team);
     teams.iter().position(|team| team.number == robot.team).ok_or_else(unknown)
 }
 

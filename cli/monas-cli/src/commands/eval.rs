@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use clap::{Args, ValueHint};
 use monas::{Registry, duration};
-use monas_eval::EvaluationSettings;
+use monas_eval::{Error, EvaluationSettings};
 use monas_terminal::{CommandFailure, CommandOutput, Exit, Format};
 
 /// Arguments of `monas eval`.
@@ -32,7 +32,10 @@ pub(crate) fn execute(
     let mut remarks = console.remarks();
     let mut progress = |line: &str| drop(writeln!(remarks, "playing {line}"));
     let evaluation = monas_eval::evaluate(&settings, &Registry::linked(), &processor_time, &mut progress)
-        .map_err(|error| CommandFailure::failed(Format::Text, error.to_string()))?;
+        .map_err(|error| match error {
+            Error::Files(diagnostics) => CommandFailure::Invalid(Format::Text, diagnostics),
+            _ => CommandFailure::failed(Format::Text, error),
+        })?;
     drop(remarks);
     write!(console.out, "{evaluation}")?;
     Ok(Exit::Success)

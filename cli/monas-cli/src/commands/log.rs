@@ -14,7 +14,7 @@ use monas_tape::Recording;
 use prost::Message;
 
 #[cfg(unix)]
-use crate::remote::{RunSelector, WatchLimits, hosts, watch};
+use crate::remote::{RunSelector, WatchLimits, connection, failure, hosts, watch};
 use line::LogLine;
 use monas_terminal::{CommandFailure, CommandOutput, Exit, Format, FormatArgument, failed};
 
@@ -110,6 +110,9 @@ fn of_tape(
 ) -> Result<Exit, CommandFailure> {
     let format = arguments.format.value;
     let recording = Recording::open(tape).map_err(failed(format))?;
+    let overview = recording.overview().map_err(failed(format))?;
+    let hosts = overview.channels.iter().map(|counted| counted.channel.host.as_str());
+    arguments.check_robots("tape", &hosts.collect::<Vec<_>>())?;
     let mut left = arguments.count.unwrap_or(u64::MAX);
     for message in recording.messages().map_err(failed(format))? {
         if left == 0 {
@@ -138,6 +141,10 @@ fn of_run(arguments: &LogArguments, console: &mut CommandOutput<'_>) -> Result<E
         _ => None,
     };
     let choice = RunSelector::of(arguments.run.clone(), host, arguments.format);
+    if arguments.robots.len() > 1 {
+        let run = connection::client(&choice)?.describe().map_err(failure(format))?;
+        arguments.check_robots("run", &run.hosts.iter().map(String::as_str).collect::<Vec<_>>())?;
+    }
     let limits = WatchLimits { count: None, length: arguments.length };
     let mut left = arguments.count.unwrap_or(u64::MAX);
     watch(TOPIC, true, &limits, &choice, console, |seen, console| {
@@ -166,6 +173,16 @@ fn read(bytes: &[u8], format: Format) -> Result<Log, CommandFailure> {
 }
 
 impl LogArguments {
+    /// Refuses robots that do not exist.
+    fn check_robots(&self, place: &str, hosts: &[&str]) -> Result<(), CommandFailure> {
+        match self.robots.iter().find(|robot| !hosts.contains(&robot.as_str())) {
+            Some(unknown) => {
+                Err(CommandFailure::unknown_name(place, "robot", unknown, hosts.iter().copied()))
+            }
+            None => Ok(()),
+        }
+    }
+
     fn wants(&self, line: &LogLine<'_>) -> bool {
         let is_one_of =
             |wanted: &[String], name: &str| wanted.is_empty() || wanted.iter().any(|one| one == name);

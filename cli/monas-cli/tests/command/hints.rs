@@ -160,3 +160,17 @@ fn findings_name_states_briefly_also_if_a_formula_is_long() {
         assert_eq!(long, None, "{line}");
     }
 }
+
+#[test]
+fn files_of_another_kind_are_named_and_reported_once() {
+    let run = monas(&["run", "models/goalie.srm"]);
+    assert_eq!(run.code, Some(3), "{run:?}");
+    assert_eq!(run.err.matches("error").count(), 1, "{}", run.err);
+    assert!(run.err.contains("E0301") && run.err.contains("models/goalie.srm:1:1"), "{}", run.err);
+    let tape = monas(&["tape", "info", "config/match.xml"]);
+    let expected = "config/match.xml: the tape is damaged: it does not begin as an MCAP file";
+    assert!(tape.code == Some(1) && tape.err.contains(expected), "{tape:?}");
+    let evaluation = monas(&["eval", "models"]);
+    assert_eq!(evaluation.code, Some(3), "{evaluation:?}");
+    assert_eq!(evaluation.err.matches("error[E0316]").count(), 1, "{}", evaluation.err);
+}

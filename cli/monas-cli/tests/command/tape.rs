@@ -75,7 +75,9 @@ fn a_tape_is_verified_as_a_whole_and_its_log_is_read() {
     let few = lines(&["--robot", "blue-1", "--agent", "Goalie", "--count", "1"]);
     assert_eq!(few.len(), 1);
     assert_eq!((&few[0]["robot"], &few[0]["agent"]), (&"blue-1".into(), &"Goalie".into()));
-    assert_eq!(lines(&["--robot", "unknown"]).len(), 0);
+    let unknown = monas(&["log", &tape(), "--robot", "blue-1", "--robot", "blu-2"]);
+    let expected = "the tape has no robot `blu-2`; did you mean `blue-2`?";
+    assert!(unknown.code == Some(2) && unknown.err.contains(expected), "{unknown:?}");
     assert!(lines(&["--level", "warning"]).len() < all.len());
     let text = done(&["log", &tape(), "--robot", "blue-1", "--count", "1"]).out;
     assert!(text.contains(" s ") && text.contains(" blue-1 Goalie"), "{text}");

@@ -1,7 +1,7 @@
 //! Truncated or damaged tapes.
 
 use crate::ball::*;
-use monas_tape::{ErrorKind, Recording};
+use monas_tape::{ErrorKind, Recording, Tape};
 use proptest::prelude::*;
 
 /// The number of messages before the end or the first error.
@@ -37,6 +37,21 @@ fn damage_inside_a_chunk_is_noticed() {
     assert_eq!(error.kind(), ErrorKind::Damaged);
     assert!(error.to_string().contains("checksum"), "{error}");
     assert!(messages.next().is_none(), "after {whole} messages in the whole tape");
+}
+
+#[test]
+fn damage_inside_an_attachment_is_noticed() {
+    let output = Shared::default();
+    let tape = Tape::to_writer(output.clone()).unwrap();
+    tape.attach("match.xml", "text/xml", b"<match/>").unwrap();
+    tape.finish().unwrap();
+    let mut bytes = output.bytes();
+    let place = bytes.windows(8).position(|text| text == b"<match/>").unwrap();
+    bytes[place] ^= 1;
+    let recording = Recording::from_bytes(bytes);
+    let errors = recording.contents().unwrap().filter_map(Result::err).map(|error| error.to_string());
+    let expected = "the tape is damaged: the checksum of the attachment `match.xml` is wrong";
+    assert_eq!(errors.collect::<Vec<_>>(), [expected]);
 }
 
 #[test]

@@ -65,7 +65,9 @@ fn records_after_damage_are_kept() {
     bytes[place + 4] ^= 0xff;
     std::fs::write(path("a.mcap"), bytes).unwrap();
     let recovery = recover(path("a.mcap"), path("a.mcap")).unwrap();
-    assert_eq!(recovery.damages, ["the tape is damaged: the checksum of a chunk is wrong"]);
+    let expected =
+        format!("{}: the tape is damaged: the checksum of a chunk is wrong", path("a.mcap").display());
+    assert_eq!(recovery.damages, [expected]);
     let kept = lines(&Recording::open(path("a.mcap")).unwrap());
     let all = lines(&whole);
     assert!(kept.len() < all.len() && kept.first() == all.first() && kept.last() == all.last());
@@ -82,7 +84,9 @@ fn messages_behind_a_damaged_first_chunk_have_the_channels_of_the_summary() {
     bytes[place + 4] ^= 0xff;
     std::fs::write(path("a.mcap"), bytes).unwrap();
     let recovery = recover(path("a.mcap"), path("a.mcap")).unwrap();
-    assert_eq!(recovery.damages, ["the tape is damaged: the checksum of a chunk is wrong"]);
+    let expected =
+        format!("{}: the tape is damaged: the checksum of a chunk is wrong", path("a.mcap").display());
+    assert_eq!(recovery.damages, [expected]);
     let (kept, all) = (lines(&Recording::open(path("a.mcap")).unwrap()), lines(&whole));
     assert!(kept.len() < all.len() && kept[..] == all[all.len() - kept.len()..]);
 }

@@ -318,9 +318,16 @@ fn ill_formed_xml_is_repaired_and_reported() {
         &["agents.xml:1:43: error[E0307]: attribute `priority` is repeated (remove one of them)"],
     );
     check(
-        "hello",
+        "hello <agents/>",
         &[
             "agents.xml:1:1: error[E0301]: text outside an element (text must be inside an element: `<name>text</name>`)",
+        ],
+    );
+    // A file of another kind is one mistake.
+    check(
+        "# A role.\nkeep = Watch\n[a < b]\n[b < c]\n",
+        &[
+            "agents.xml:1:1: error[E0301]: this is not XML (XML begins with an element; the name of a configuration in TOML ends with `.toml`)",
         ],
     );
     check(
