@@ -5,8 +5,8 @@ use std::io::{self, IsTerminal};
 
 use unicode_width::UnicodeWidthStr;
 
-/// Blanks between two columns.
-const GAP: usize = 2;
+/// Blanks between two columns, and between those of a table that does not fit with them.
+const GAPS: [usize; 2] = [2, 1];
 
 /// A table whose columns are right-aligned from column `first_number` on.
 pub struct Table {
@@ -74,29 +74,35 @@ impl Table {
 
     /// Header, a rule, and the rows.
     fn text(&self, limit: usize) -> String {
-        let FoldedTable { widths, header, rows } = self.folded(limit, GAP);
-        let rule = "─".repeat(widths.iter().sum::<usize>() + GAP * widths.len().saturating_sub(1));
-        let mut lines = self.lines(&header, &widths);
-        lines.push(rule);
-        lines.extend(rows.iter().flat_map(|row| self.lines(row, &widths)));
+        let [wide, narrow] = GAPS.map(|gap| (gap, self.folded(limit, gap)));
+        let (gap, table) = if wide.1.width(wide.0) <= limit { wide } else { narrow };
+        let mut lines = self.lines(&table.header, &table.widths, gap);
+        lines.push("─".repeat(table.width(gap)));
+        lines.extend(table.rows.iter().flat_map(|row| self.lines(row, &table.widths, gap)));
         lines.join("\n")
     }
 
-    fn lines(&self, row: &FoldedRow, widths: &[usize]) -> Vec<String> {
+    fn lines(&self, row: &FoldedRow, widths: &[usize], gap: usize) -> Vec<String> {
         let height = row.iter().map(Vec::len).max().unwrap_or_default();
-        (0..height).map(|place| self.line(row, place, widths)).collect()
+        (0..height).map(|place| self.line(row, place, widths, gap)).collect()
     }
 
-    fn line(&self, row: &FoldedRow, place: usize, widths: &[usize]) -> String {
+    fn line(&self, row: &FoldedRow, place: usize, widths: &[usize], gap: usize) -> String {
         let mut line = String::new();
         for (column, (cell, &width)) in row.iter().zip(widths).enumerate() {
             let text = cell.get(place).map(String::as_str).unwrap_or_default();
             let blank = " ".repeat(width.saturating_sub(text.width()));
             let (before, after) = if column < self.first_number { ("", &*blank) } else { (&*blank, "") };
-            line += &format!("{before}{text}{after}{:GAP$}", "");
+            line += &format!("{before}{text}{after}{:gap$}", "");
         }
         line.truncate(line.trim_end().len());
         line
+    }
+}
+
+impl FoldedTable {
+    fn width(&self, gap: usize) -> usize {
+        self.widths.iter().sum::<usize>() + gap * self.widths.len().saturating_sub(1)
     }
 }
 
@@ -188,10 +194,10 @@ ball                  Vision               1.25 ms";
 
     #[test]
     fn cells_are_folded_between_words_and_only_as_far_as_needed() {
-        let narrow = topics().folded(42, GAP);
-        assert_eq!(narrow.widths.iter().sum::<usize>() + 2 * GAP, 42);
+        let narrow = topics().folded(42, 2);
+        assert_eq!(narrow.width(2), 42);
         assert_eq!(narrow.rows[0][..2], [vec!["soccer/", "attack_status"], vec!["MotionController"]]);
-        let least = topics().folded(0, GAP);
+        let least = topics().folded(0, 2);
         assert_eq!(least.widths, [7, 10, 7]);
         assert_eq!(least.rows[0][0], ["soccer/", "attack_", "status"]);
         assert_eq!(least.rows[0][1], ["Motion", "Controller"]);
@@ -199,6 +205,13 @@ ball                  Vision               1.25 ms";
             (&least.header[2][..], &least.rows[1][2][..]),
             (&["mean".into(), "cycle".into()][..], &["1.25 ms".into()][..])
         );
+    }
+
+    #[test]
+    fn a_table_that_does_not_fit_has_narrow_gaps() {
+        let lines = |limit| topics().text(limit).lines().last().map(str::to_owned);
+        assert_eq!(lines(28).as_deref(), Some("ball     Vision      1.25 ms"));
+        assert_eq!(lines(26).as_deref(), Some("ball    Vision     1.25 ms"));
     }
 
     #[test]

@@ -83,10 +83,12 @@ fn describe(agent: &AgentEntry, console: &mut CommandOutput<'_>) -> Result<(), C
         agent.overruns
     )?;
     for chart in &agent.charts {
+        let active: Vec<String> = chart.active.iter().map(|path| table::state_name(path)).collect();
+        let active = active.join(", ");
         let is = match chart.state.as_str() {
-            "runs" => format!("in {}", chart.active.join(", ")),
+            "runs" => format!("in {active}"),
             "stopped" => "stopped".into(),
-            state => format!("{state} in {}", chart.active.join(", ")),
+            state => format!("{state} in {active}"),
         };
         writeln!(console.out, "  chart {}: {is}", chart.model)?;
     }

@@ -18,28 +18,10 @@ pub(crate) const ACTIVITY_HEADER: [&str; 9] =
 pub(crate) fn text(figures: &Metrics, out: &mut dyn Write) -> io::Result<()> {
     figures.alarms.iter().try_for_each(|alarm| writeln!(out, "alarm: {alarm}"))?;
     writeln!(out, "{}", table::of_numbers(AGENT_HEADER, 3, figures.agents.iter().map(agent)))?;
-    let activities = figures.agents.iter().flat_map(|agent| {
-        agent.activities.iter().map(|one| {
-            let [name, rest @ ..] = activity(one);
-            let [state, remark, hz, core, mean, p99, failures, memory] = rest;
-            [
-                agent.entry.host.clone(),
-                agent.entry.name.clone(),
-                name,
-                state,
-                remark,
-                hz,
-                core,
-                mean,
-                p99,
-                failures,
-                memory,
-            ]
-        })
-    });
-    let [name, state, remark, hz, core, mean, p99, failures, memory] = ACTIVITY_HEADER;
-    let header = ["host", "agent", name, state, remark, hz, core, mean, p99, failures, memory];
-    writeln!(out, "\n{}", table::of_numbers(header, 5, activities))?;
+    for agent in figures.agents.iter().filter(|agent| !agent.activities.is_empty()) {
+        writeln!(out, "\n{} on {}", agent.entry.name, agent.entry.host)?;
+        writeln!(out, "{}", table::of_numbers(ACTIVITY_HEADER, 3, agent.activities.iter().map(activity)))?;
+    }
     let topics = figures
         .topics
         .iter()
