@@ -42,6 +42,11 @@ fn changing_what_runs() {
 }
 
 #[test]
+fn what_a_recording_explains() {
+    read("studio.md", 4);
+}
+
+#[test]
 fn to_the_robot() {
     read("deploy.md", 2);
 }

@@ -3,9 +3,9 @@
 //! The lines of a block of the language `sh` are executed one after the other, in a separate
 //! folder. A line that ends with ` &` runs in the background until the end of the chapter, and `#
 //! ends with 3` gives the exit code of a command that fails. The lines of a following `text` block
-//! must occur in the output; commands that only look at a run are repeated until they do, since
-//! the run has just begun. A block with the name of a file (`xml robot.xml`) is written to that
-//! file first.
+//! must occur in the output, with `...` for what is left out; commands that only look at a run are
+//! repeated until they do, since the run has just begun. A block with the name of a file (`xml
+//! robot.xml`) is written to that file first.
 
 use std::fs;
 use std::process::Command;
@@ -66,7 +66,8 @@ impl Reading {
             return self.background.push(Running::of(&mut self.command(&words), begin));
         }
         let (typed, code) = typed.split_once(" # ends with ").unwrap_or((typed, "0"));
-        let words: Vec<&str> = typed.split(' ').map(|word| word.trim_matches('\'')).collect();
+        let words = words(typed);
+        let words: Vec<&str> = words.iter().map(String::as_str).collect();
         let answer = self.command(&words).output().expect("the command starts");
         let Answer { code: ended, out, err } = answer.into();
         assert_eq!(ended, code.parse().ok(), "{words:?}: {out}{err}");
@@ -94,17 +95,39 @@ impl Reading {
             Block::Shown(_) if self.commands == 0 => {}
             Block::Shown(lines) => {
                 for _ in 0..REPETITIONS {
-                    if lines.iter().all(|line| self.said.contains(line.trim())) {
+                    if lines.iter().all(|line| self.said.contains(shown(line))) {
                         break;
                     }
                     self.looking.clone().iter().for_each(|line| self.run(line));
                 }
                 for line in lines {
-                    assert!(self.said.contains(line.trim()), "`{line}` is not in\n{}", self.said);
+                    assert!(self.said.contains(shown(&line)), "`{line}` is not in\n{}", self.said);
                 }
             }
         }
     }
+}
+
+/// The words of a command; what single quotes enclose is one.
+fn words(line: &str) -> Vec<String> {
+    let mut words = vec![String::new()];
+    for (number, part) in line.split('\'').enumerate() {
+        let is_quoted = number % 2 == 1;
+        for (place, word) in part.split(' ').enumerate() {
+            match words.last_mut() {
+                Some(last) if is_quoted && place > 0 => last.extend([" ", word]),
+                Some(last) if place == 0 => last.push_str(word),
+                _ => words.push(word.to_owned()),
+            }
+        }
+    }
+    words
+}
+
+/// The part of a line that is shown: the rest of it, or the lines in its place, may be left out as
+/// `...`.
+fn shown(line: &str) -> &str {
+    line.trim().trim_end_matches("...").trim_end()
 }
 
 /// Runs a chapter with at least this many commands in a folder.
