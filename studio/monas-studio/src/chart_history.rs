@@ -1,8 +1,10 @@
 //! The steps of a chart on a tape.
 
+use std::collections::BTreeMap;
+
 use monas::records::Chart;
 use prost::Message;
-use yase::{NodeId, TransitionId};
+use yase::{NodeId, Statechart, TransitionId};
 
 use crate::run_view::CHART;
 use crate::tape_run::{TapeChart, TapeRun};
@@ -13,6 +15,9 @@ pub(crate) struct RecordedStep {
     /// The index of its record among the messages of the tape.
     pub(crate) index: usize,
     pub(crate) step: Chart,
+    /// Whether it stands for the steps before the beginning of the tape: it enters the states that
+    /// were active there, as far as later steps show.
+    pub(crate) is_before: bool,
 }
 
 impl RecordedStep {
@@ -38,9 +43,24 @@ impl TapeRun {
             let is_own =
                 channel.topic == CHART && channel.host == chart.host && channel.publisher == chart.agent;
             let step = is_own.then(|| Chart::decode(self.bytes(entry)).ok()).flatten()?;
-            (step.chart == chart.chart).then_some(RecordedStep { index, step })
+            let recorded = RecordedStep { index, step, is_before: false };
+            (recorded.step.chart == chart.chart).then_some(recorded)
         };
-        ChartHistory { steps: (0..self.len()).filter_map(step).collect() }
+        let mut steps: Vec<RecordedStep> = (0..self.len()).filter_map(step).collect();
+        if let Some(RecordedStep { index, step, .. }) = steps.first().filter(|_| self.is_cut(chart)) {
+            let entries = active_before(&chart.statechart, &steps);
+            let step = Chart { chart: chart.chart, time: step.time, entries, ..Chart::default() };
+            steps.insert(0, RecordedStep { index: *index, step, is_before: true });
+        }
+        ChartHistory { steps }
+    }
+
+    /// Whether the tape begins after the first step of the agent's charts.
+    pub(crate) fn is_cut(&self, chart: &TapeChart) -> bool {
+        let sequences = (0..self.len()).filter_map(|index| self.entry(index)).filter(|(_, channel)| {
+            channel.topic == CHART && channel.host == chart.host && channel.publisher == chart.agent
+        });
+        sequences.map(|(entry, _)| entry.sequence).next().is_some_and(|first| first > 1)
     }
 
     /// The number of messages up to and with the next firing of a transition after `count`
@@ -57,6 +77,30 @@ impl TapeRun {
     }
 }
 
+/// The nodes that were active before these steps: those that are left before they are entered, or
+/// in which something is left or entered before.
+fn active_before(chart: &Statechart, steps: &[RecordedStep]) -> Vec<u32> {
+    let mut was_active = BTreeMap::new();
+    let around = |node: u32| {
+        let is_known = (node as usize) < chart.nodes().len();
+        is_known.then(|| chart.ancestors(NodeId(node))).into_iter().flatten().map(|around| around.0)
+    };
+    for RecordedStep { step, .. } in steps {
+        for &left in &step.exits {
+            for node in std::iter::once(left).chain(around(left)) {
+                was_active.entry(node).or_insert(true);
+            }
+        }
+        for &entered in &step.entries {
+            was_active.entry(entered).or_insert(false);
+            for node in around(entered).filter(|node| !step.entries.contains(node)) {
+                was_active.entry(node).or_insert(true);
+            }
+        }
+    }
+    was_active.into_iter().filter_map(|(node, was_active)| was_active.then_some(node)).collect()
+}
+
 impl ChartHistory {
     /// The steps among the first `count` messages of the tape.
     pub(crate) fn until(&self, count: usize) -> &[RecordedStep] {
@@ -66,6 +110,12 @@ impl ChartHistory {
     /// The steps from the first `count` messages on.
     pub(crate) fn since(&self, count: usize) -> &[RecordedStep] {
         &self.steps[self.until(count).len()..]
+    }
+
+    /// The nodes that were active where the tape begins, if that is after the first step.
+    pub(crate) fn active_before(&self) -> Vec<NodeId> {
+        let before = self.steps.first().filter(|first| first.is_before);
+        before.into_iter().flat_map(|first| &first.step.entries).map(|node| NodeId(*node)).collect()
     }
 
     /// Whether a node is active after steps.

@@ -56,22 +56,21 @@ impl ChartView {
     pub(crate) fn load(&mut self, state: &ChartState) {
         self.model.clone_from(&state.model);
         self.state.clone_from(&state.state);
-        self.active = self.show(&state.picture);
+        self.show(&state.picture);
     }
 
-    /// Takes the shapes. Returns the states that are active in them.
-    pub(crate) fn show(&mut self, picture: &str) -> BTreeSet<u32> {
+    /// Takes the shapes, and the states that are active in them.
+    pub(crate) fn show(&mut self, picture: &str) {
         let mut picture: Value = serde_json::from_str(picture).unwrap_or_default();
         let active = picture.as_object_mut().and_then(|picture| picture.remove("active"));
         let active = active.iter().filter_map(Value::as_array).flatten();
-        let active = active.filter_map(|node| node.as_u64()?.try_into().ok()).collect();
+        self.active = active.filter_map(|node| node.as_u64()?.try_into().ok()).collect();
         if *self.picture != picture {
             self.picture = Arc::new(picture);
             self.drawing += 1;
         }
         self.is_stale = false;
         self.revision += 1;
-        active
     }
 
     /// Applies a step, at a time in nanoseconds, with the name of its event.

@@ -153,7 +153,7 @@ impl RunView {
         self.charts.entry(key).or_default().load(state);
     }
 
-    /// Takes the shapes of a chart.
+    /// Takes the shapes of a chart, and the states that are active in them.
     pub(crate) fn show_chart(&mut self, key: ChartKey, model: &str, picture: &str) {
         let view = self.charts.entry(key).or_default();
         model.clone_into(&mut view.model);

@@ -130,8 +130,8 @@ impl TapeRun {
         sort_events(&mut index.events);
         // By time of publication; equal times stay in the order of the tape.
         index.entries.sort_by_key(|entry| entry.time);
-        let first = index.first_moment(name);
         let mut tape = TapeRun(Arc::new(index));
+        let first = tape.first_moment(name);
         let moments = tape.moments(first);
         if let Some(index) = Arc::get_mut(&mut tape.0) {
             index.moments = moments;
@@ -158,6 +158,27 @@ impl TapeRun {
             moments.push(moment.clone());
         }
         moments
+    }
+
+    /// The run before its first message; of a tape that begins later, with the states that were
+    /// active there.
+    fn first_moment(&self, name: &str) -> TapeMoment {
+        let mut view = RunView::default();
+        view.begin();
+        view.link = Link::Tape;
+        name.clone_into(&mut view.name);
+        view.is_simulated = true;
+        view.decoder = self.decoder().clone();
+        view.hosts = self.channels().iter().map(|channel| channel.host.clone()).collect();
+        view.hosts.sort_unstable();
+        view.hosts.dedup();
+        view.now = self.begin();
+        for chart in self.charts() {
+            let before = self.is_cut(chart).then(|| self.history(chart).active_before());
+            let picture = yase_export::to_picture(&chart.statechart, &before.unwrap_or_default());
+            view.show_chart(chart.key(), &chart.model, &picture);
+        }
+        TapeMoment::new(view, self.channels().len())
     }
 
     pub(crate) fn len(&self) -> usize {
@@ -281,25 +302,6 @@ impl TapeIndex {
         if let Some(event) = event.filter(|event| !event.lasts || before.as_ref() != Some(event)) {
             self.events.push(json!({"t": seconds(time), "kind": event.kind, "text": event.text}));
         }
-    }
-
-    /// The run before its first message.
-    fn first_moment(&self, name: &str) -> TapeMoment {
-        let mut view = RunView::default();
-        view.begin();
-        view.link = Link::Tape;
-        name.clone_into(&mut view.name);
-        view.is_simulated = true;
-        view.decoder = self.decoder.clone();
-        view.hosts = self.channels.iter().map(|channel| channel.host.clone()).collect();
-        view.hosts.sort_unstable();
-        view.hosts.dedup();
-        view.now = self.entries.first().map_or(0, |entry| entry.time);
-        for TapeChart { host, agent, chart, model, statechart } in &self.charts {
-            let key = ChartKey { host: host.clone(), agent: agent.clone(), chart: *chart };
-            view.show_chart(key, model, &yase_export::to_picture(statechart, &[]));
-        }
-        TapeMoment::new(view, self.channels.len())
     }
 }
 

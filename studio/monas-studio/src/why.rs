@@ -8,9 +8,10 @@ use serde::Serialize;
 use yase::statechart::StateNames;
 use yase::{NodeId, ScopeId, Statechart, TransitionId};
 
+use crate::chart_history::RecordedStep;
 use crate::chart_view::{ChartKey, seconds};
 use crate::read_value::{ReadMoment, ReadValue};
-use crate::run_view::{CHART, MODEL};
+use crate::run_view::MODEL;
 use crate::tape_run::{TapeChart, TapeRun};
 use crate::transition_explanation::is_connector;
 
@@ -38,8 +39,11 @@ pub struct Explanation {
     pub state: String,
     /// Whether it was active at the moment.
     pub is_active: bool,
-    /// When it was entered, s; none if it was not entered before.
+    /// When it was entered, s; none if the tape does not show that.
     pub entered: Option<f64>,
+    /// The time of the chart's first step on the tape, s, if there were earlier ones and the tape
+    /// shows no entry.
+    pub begins: Option<f64>,
     /// When it was left since, s.
     pub left: Option<f64>,
     /// The transitions that led to it, in the order in which they were taken.
@@ -59,7 +63,7 @@ pub struct TakenSegment {
     pub reads: Vec<ReadValue>,
 }
 
-/// The steps that entered and left a state last.
+/// The steps that entered and left a state last, by their places in the history.
 struct LastEntry {
     entered: Option<usize>,
     left: Option<usize>,
@@ -149,45 +153,50 @@ impl TapeRun {
     /// Why a state is active after `count` messages, or was so last.
     pub(crate) fn explain_until(&self, chart: &TapeChart, node: NodeId, count: usize) -> Explanation {
         let names = StateNames::of(&chart.statechart);
-        let last = self.last_entry(chart, node, count);
-        let time = |index: Option<usize>| Some(seconds(self.entry(index?)?.0.time));
+        let history = self.history(chart);
+        let taken = history.until(count);
+        let last = LastEntry::of(taken, node);
+        let is_shown = |place: &usize| !taken[*place].is_before;
+        let time = |place: usize| Some(seconds(self.entry(taken[place].index)?.0.time));
+        let entered = last.entered.filter(is_shown);
+        let begins = history.steps.first().filter(|first| first.is_before && entered.is_none());
         let mut explanation = Explanation {
             host: chart.host.clone(),
             agent: chart.agent.clone(),
             state: names.name(node).to_owned(),
             is_active: last.entered.is_some() && last.left.is_none(),
-            entered: time(last.entered),
-            left: time(last.left),
+            entered: entered.and_then(time),
+            begins: begins.map(|first| seconds(first.step.time)),
+            left: last.left.and_then(time),
             segments: Vec::new(),
         };
-        let Some(entered) = last.entered else { return explanation };
+        let Some(entered) = entered else { return explanation };
         // With the composites around it that were entered at the same time, outermost first.
         let statechart = &chart.statechart;
         let mut steps = vec![entered];
         for around in statechart.ancestors(node) {
-            let step = last.by_node.get(&around.0).copied();
+            let step = last.by_node.get(&around.0).copied().filter(is_shown);
             if let Some(step) =
-                step.filter(|step| time(Some(*step)) == explanation.entered && !steps.contains(step))
+                step.filter(|step| time(*step) == explanation.entered && !steps.contains(step))
             {
                 steps.insert(0, step);
             }
         }
         steps.sort_unstable();
         let scopes = statechart.scopes();
-        let history = self.history(chart);
-        for step in steps {
-            let Some(record) = self.step_at(step) else { continue };
-            for segment in way_to(statechart, &record, node) {
+        for place in steps {
+            let RecordedStep { index, step: record, .. } = &taken[place];
+            for segment in way_to(statechart, record, node) {
                 let transition = statechart.transition(segment);
                 let scope = scopes.get(transition.source.0 as usize).copied().unwrap_or(ScopeId::ROOT);
                 let guard = transition.expression.guard.as_ref();
                 let moment = ReadMoment {
                     chart,
                     scope,
-                    count: step,
+                    count: *index,
                     is_step: true,
                     time: record.time,
-                    steps: history.until(step),
+                    steps: &taken[..place],
                 };
                 explanation.segments.push(TakenSegment {
                     source: names.name(transition.source).to_owned(),
@@ -199,29 +208,20 @@ impl TapeRun {
         }
         explanation
     }
+}
 
-    fn step_at(&self, index: usize) -> Option<Chart> {
-        let (entry, _) = self.entry(index)?;
-        Chart::decode(self.bytes(entry)).ok()
-    }
-
-    /// The records of a chart's steps, by their positions.
-    fn last_entry(&self, chart: &TapeChart, node: NodeId, count: usize) -> LastEntry {
+impl LastEntry {
+    fn of(steps: &[RecordedStep], node: NodeId) -> LastEntry {
         let mut last = LastEntry { entered: None, left: None, by_node: BTreeMap::new() };
-        for index in 0..count {
-            let is_step = self.entry(index).is_some_and(|(_, channel)| {
-                channel.topic == CHART && channel.host == chart.host && channel.publisher == chart.agent
-            });
-            let step = self.step_at(index).filter(|step| is_step && step.chart == chart.chart);
-            let Some(step) = step else { continue };
+        for (place, RecordedStep { step, .. }) in steps.iter().enumerate() {
             if step.exits.contains(&node.0) && last.entered.is_some() && last.left.is_none() {
-                last.left = Some(index);
+                last.left = Some(place);
             }
             if step.entries.contains(&node.0) {
-                (last.entered, last.left) = (Some(index), None);
+                (last.entered, last.left) = (Some(place), None);
             }
             if last.left.is_none() {
-                last.by_node.extend(step.entries.iter().map(|entered| (*entered, index)));
+                last.by_node.extend(step.entries.iter().map(|entered| (*entered, place)));
             }
         }
         last

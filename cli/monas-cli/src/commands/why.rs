@@ -83,9 +83,20 @@ pub(crate) fn execute(
 
 /// An explanation as text.
 fn lines(why: &Explanation, at: f64) -> Vec<String> {
-    let Explanation { host, agent, state, entered, left, segments, .. } = why;
+    let Explanation { host, agent, state, is_active, entered, begins, left, segments } = why;
+    let cut =
+        begins.map(|begins| format!("its steps are on the tape from {begins:.3} s on")).unwrap_or_default();
     let mut lines = vec![match (entered, left) {
-        (None, _) => format!("{host} {agent} was not in {state} up to {at:.3} s"),
+        (None, None) if *is_active => {
+            format!("{host} {agent} was in {state} at {at:.3} s, since an earlier time; {cut}")
+        }
+        (None, Some(left)) => format!(
+            "{host} {agent} was not in {state} at {at:.3} s; it was last up to {left:.3} s, and {cut}"
+        ),
+        (None, None) if begins.is_some() => {
+            format!("{host} {agent} was not in {state} up to {at:.3} s as far as recorded; {cut}")
+        }
+        (None, None) => format!("{host} {agent} was not in {state} up to {at:.3} s"),
         (Some(entered), None) => {
             format!("{host} {agent} was in {state} at {at:.3} s, since {entered:.3} s")
         }

@@ -215,6 +215,17 @@ fn an_impossible_replay_has_a_reason() {
     assert!(answer.err.contains("the tape starts after its run"), "{}", answer.err);
 }
 
+#[test]
+fn a_part_of_a_tape_explains_what_was_active_before_it() {
+    let (_folder, part) = fresh("part.mcap");
+    done(&["tape", "cut", &tape(), "--from", "14s", "-o", &text(&part)]);
+    let why = |tape: &str| done(&["why", tape, "blue-2", "--state", "active", "--at", "15"]).out;
+    let whole = why(&tape());
+    assert!(whole.starts_with("blue-2 Attacker was in active at 15.000 s, since 0."), "{whole}");
+    let expected = "was in active at 15.000 s, since an earlier time; its steps are on the tape from 14.";
+    assert!(why(&text(&part)).contains(expected), "{}", why(&text(&part)));
+}
+
 /// A short run in real time.
 fn live(folder: &Path) -> String {
     let live = text(&folder.join("live.mcap"));

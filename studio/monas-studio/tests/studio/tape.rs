@@ -88,6 +88,44 @@ fn moments_after_a_chart_was_replaced_are_not_explained() {
 }
 
 #[test]
+fn later_steps_show_what_was_active_where_a_cut_tape_begins() {
+    let folder = tempfile::tempdir().unwrap();
+    let (path, part) = (folder.path().join("whole.mcap"), folder.path().join("part.mcap"));
+    let tape = Tape::create(&path).unwrap();
+    let hub = Hub::with_linked_topics("robot").unwrap();
+    hub.observe(Box::new(tape.clone()));
+    let mut steps = hub.publisher(records::CHART, "Lamp").unwrap();
+    for (number, exits, entries) in [(1, vec![2], vec![3]), (2, vec![], vec![]), (3, vec![3], vec![2])] {
+        let step = records::Chart { exits, entries, ..records::Chart::default() };
+        let time = number * 1_000_000_000;
+        steps.publish(records::Chart { time, ..step }, Timestamp::from_nanos(time));
+    }
+    tape.finish().unwrap();
+    let from = Some(Timestamp::from_nanos(1_500_000_000));
+    let filter = monas_tape::TapeFilter { from, ..monas_tape::TapeFilter::default() };
+    monas_tape::cut(&Recording::open(&path).unwrap(), &filter, &part).unwrap();
+    let (host, agent, model) = ("robot".into(), "Lamp".into(), "lamp".into());
+    let charts = [TapeChart { host, agent, chart: 0, model, statechart: lamp() }];
+    let tape = TapeRun::new("part", Recording::open(&part).unwrap(), &charts, None).unwrap();
+    let explain = |state, seconds| {
+        let why = tape.explain(&WhyQuestion { host: "robot", agent: None, state, seconds }).unwrap();
+        (why.is_active, why.entered, why.begins, why.left)
+    };
+    assert_eq!(explain("on", 1.7), (false, None, Some(2.0), None), "before its first step");
+    assert_eq!(explain("on", 2.5), (true, None, Some(2.0), None));
+    assert_eq!(explain("on", 3.5), (false, None, Some(2.0), Some(3.0)));
+    assert_eq!(explain("off", 2.5), (false, None, Some(2.0), None));
+    assert_eq!(explain("off", 3.5), (true, Some(3.0), None, None));
+    let question = TransitionQuestion { host: "robot", agent: None, transition: "on -> off", seconds: 2.5 };
+    assert_eq!(tape.explain_transition(&question).unwrap().verdict, Verdict::Waits);
+    let listen = Some("127.0.0.1:0".parse().unwrap());
+    let studio = Studio::of_tape(tape, StudioSettings { listen, ..StudioSettings::default() }).unwrap();
+    let mut viewer = Viewer::open(&studio).unwrap();
+    let active = viewer.wait(|message| message["charts"][0].get("active").cloned());
+    assert_eq!(active, json!([0, 3]), "the picture of the beginning");
+}
+
+#[test]
 fn two_tapes_share_a_timeline_with_their_first_difference() {
     let folder = tempfile::tempdir().unwrap();
     let (host, agent, model) = ("robot".into(), "Lamp".into(), "lamp".into());
