@@ -96,7 +96,7 @@ pub struct TestHost {
     pub log: Vec<String>,
     /// Whether operations on blackboards are logged too.
     pub verbose: bool,
-    /// Disables the logging of micro-steps, so that the machine may use its fast path.
+    /// Disables the logging of micro-steps.
     pub silent: bool,
     /// Whether the lines of micro-steps contain the reads of guards.
     pub reads: bool,
