@@ -32,8 +32,9 @@
 //! robot collides as a disk with other robots and as a pair of feet, or a lying body, with the
 //! ball.
 //!
-//! *The referee places robots.* Robots are placed for kick-offs by hand, as teams of 2010 often
-//! chose. Outside PLAYING the referee holds the robots, so a robot cannot move in SET.
+//! *The referee places robots.* INITIAL begins with all robots placed by hand. In READY they walk
+//! to their places for the kick-off, and SET places those by hand that stand where they must not.
+//! Outside READY and PLAYING, and while the game is stopped, the referee holds the robots.
 //!
 //! # Frames and units
 //!
