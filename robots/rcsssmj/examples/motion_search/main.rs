@@ -1,8 +1,8 @@
 //! Searches the parameters of the project's own motions by CMA-ES, in the world of the server.
 //!
 //! ```text
-//! cargo run --release -p monas-rcsssmj --example motion_search -- walk --seed 1 --generations 60
-//! cargo run --release -p monas-rcsssmj --example motion_search -- walk --robot K1 --generations 60
+//! cargo run --release -p monas-rcsssmj --features motion-search --example motion_search -- walk --seed 1 --generations 60
+//! cargo run --release -p monas-rcsssmj --features motion-search --example motion_search -- walk --robot K1 --generations 60
 //! ```
 //!
 //! The package rcsssmj of PyPI has to be installed: a child process makes the cycles of the server,
