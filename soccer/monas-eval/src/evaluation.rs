@@ -128,7 +128,7 @@ const FOUND: &str = include_str!("../faults/found.txt");
 const CYCLES: f64 = 50.0;
 /// Robots of blue.
 const ROBOTS: f64 = 3.0;
-/// Seeds of the matches without opponents that measure the cost; the median counts.
+/// Seeds of the matches without opponents that measure the cost; the median of each figure counts.
 const COST_SEEDS: u64 = 3;
 
 /// Plays and measures every methodology. `processor_time` is that of the calling thread, and
@@ -149,7 +149,7 @@ pub fn evaluate(
         let plan = plan.embody(|_, _, body| Box::new(IdleRobot(body)));
         idle.push(measure(plan, seed, settings.length, processor_time)?);
     }
-    let idle = median(idle);
+    let idle = median(&idle);
     for methodology in Methodology::ALL {
         let mut play = PlayFigures::default();
         for seed in 1..=settings.seeds {
@@ -161,7 +161,7 @@ pub fn evaluate(
             let plan = alone(plan(settings, methodology, registry)?);
             costs.push(measure(plan, seed, settings.length, processor_time)?);
         }
-        let cost = median(costs).per_robot(&idle, settings.length);
+        let cost = median(&costs).per_robot(&idle, settings.length);
         rows.push((methodology, play, cost, sources::of(methodology)));
     }
     Ok(Evaluation { settings: settings.clone(), rows })
@@ -266,10 +266,20 @@ fn measure(
     Ok(MatchCost { processor_time: ended.saturating_sub(began), allocations, messages })
 }
 
-/// The match of median processor time.
-fn median(mut costs: Vec<MatchCost>) -> MatchCost {
-    costs.sort_by_key(|cost| cost.processor_time);
-    costs.get(costs.len() / 2).copied().unwrap_or_default()
+/// The median of each figure. The match of median processor time would not do: which one that is
+/// depends on the computer, and allocations and messages do not.
+fn median(costs: &[MatchCost]) -> MatchCost {
+    MatchCost {
+        processor_time: median_of(costs, |cost| cost.processor_time),
+        allocations: median_of(costs, |cost| cost.allocations),
+        messages: median_of(costs, |cost| cost.messages),
+    }
+}
+
+fn median_of<T: Ord + Copy + Default>(costs: &[MatchCost], figure: impl Fn(&MatchCost) -> T) -> T {
+    let mut figures: Vec<T> = costs.iter().map(figure).collect();
+    figures.sort_unstable();
+    figures.get(figures.len() / 2).copied().unwrap_or_default()
 }
 
 impl MatchCost {
@@ -354,5 +364,25 @@ impl fmt::Display for Evaluation {
         }
         let sums = FOUND.split_once("\n\n").map_or("", |(_, sums)| sums);
         write!(f, "\n{sums}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_median_of_a_figure_does_not_depend_on_the_others() {
+        let cost = |milliseconds, allocations, messages| MatchCost {
+            processor_time: Duration::from_millis(milliseconds),
+            allocations,
+            messages,
+        };
+        for times in [[1, 2, 3], [2, 3, 1], [3, 1, 2]] {
+            let MatchCost { processor_time, allocations, messages } =
+                median(&[cost(times[0], 10, 300), cost(times[1], 20, 100), cost(times[2], 30, 200)]);
+            assert_eq!((processor_time, allocations, messages), (Duration::from_millis(2), 20, 200));
+        }
+        assert_eq!(median(&[]).messages, 0);
     }
 }
