@@ -38,7 +38,7 @@
 //! | `MessageLogCerr` | `1` for the console too |
 //! | `MessageLogCerrColor` | `1` for colours there |
 //! | `MessageLogFilter` | the activities or agents whose messages are wanted, or `all` |
-//! | `LogFileVerbosityLevel` | 0 fatal errors, 1 errors, 2 info, 3 extra info, 4 all; errors are always written |
+//! | `LogFileVerbosityLevel` | 0 or less fatal errors, 1 errors, 2 info, 3 extra info, 4 all; errors are always written |
 //! | `MessageLogFormat` | `text`, or `json` for a JSON object a line; the thesis does not have it |
 //!
 //! # Recording
