@@ -132,7 +132,10 @@ impl TapeRun {
         if of_host.is_empty() {
             let mut hosts: Vec<&str> = self.charts().iter().map(|chart| chart.host.as_str()).collect();
             hosts.dedup();
-            return Err(format!("no host with charts is named `{host}`; there are `{}`", hosts.join("`, `")));
+            return Err(match hosts[..] {
+                [] => "no statecharts are recorded in this tape".to_owned(),
+                _ => format!("no host with charts is named `{host}`; there are `{}`", hosts.join("`, `")),
+            });
         }
         let fits = |chart: &&&TapeChart| agent.is_none_or(|agent| chart.agent == agent);
         let mut unknown = format!("`{host}` has no agent `{}` with a chart", agent.unwrap_or_default());

@@ -59,6 +59,14 @@ fn open(steps: u32) -> (Studio, Viewer, Value) {
 }
 
 #[test]
+fn a_tape_without_charts_says_so() {
+    let folder = tempfile::tempdir().unwrap();
+    let tape = TapeRun::new("lamp", record(&folder.path().join("lamp.mcap"), 1), &[], None).unwrap();
+    let why = tape.explain(&WhyQuestion { host: "robot", agent: None, state: "off", seconds: 1.0 });
+    assert_eq!(why.unwrap_err(), "no statecharts are recorded in this tape");
+}
+
+#[test]
 fn moments_after_a_chart_was_replaced_are_not_explained() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("swapped.mcap");
