@@ -14,6 +14,9 @@ const WIDTH: usize = 80;
 /// How many codes are suggested instead of an unknown one, at most.
 const SUGGESTED: usize = 8;
 
+/// How many characters a suggested code shares with the unknown one, at least.
+const SHARED: usize = 2;
+
 /// The arguments of `monas explain`.
 #[derive(Args, Debug)]
 pub(crate) struct ExplainArguments {
@@ -52,7 +55,7 @@ fn list(console: &mut CommandOutput<'_>) -> io::Result<()> {
 
 /// Suggests the codes that begin with as many characters of the unknown one as possible.
 fn unknown(code: &str, wanted: &str, explained: &[Explanation]) -> CommandFailure {
-    let near = (1..=wanted.len()).rev().filter(|&end| wanted.is_char_boundary(end)).find_map(|end| {
+    let near = (SHARED..=wanted.len()).rev().filter(|&end| wanted.is_char_boundary(end)).find_map(|end| {
         let begin_so = explained.iter().map(|it| it.code).filter(|it| it.starts_with(&wanted[..end]));
         let codes: Vec<&str> = begin_so.take(SUGGESTED).collect();
         (!codes.is_empty()).then(|| format!("near are {}; ", codes.join(", ")))

@@ -237,8 +237,9 @@ fn summary(data: &GameControlData) -> String {
     let [left, right] = &data.teams;
     let half = if data.is_first_half { "first half" } else { "second half" };
     let seconds = data.seconds_left.max(0);
+    let stopped = if data.competition.is_stopped() { ", stopped" } else { "" };
     let mut text = format!(
-        "{}, {} {} : {} {}, {half}, {}:{:02} left",
+        "{}{stopped}, {} {} : {} {}, {half}, {}:{:02} left",
         data.state.to_string().to_uppercase(),
         left.number,
         left.score,

@@ -40,8 +40,10 @@ fn an_unknown_code_is_answered_with_near_ones() {
         answer.err,
         "error: there is no code `E0124`; near are E0120, E0121, E0122, E0123; `monas explain` lists all\n"
     );
-    let answer = monas(&["explain", "?"]);
-    assert_eq!(answer.err, "error: there is no code `?`; `monas explain` lists all\n");
+    for far in ["?", "E9999"] {
+        let expected = format!("error: there is no code `{far}`; `monas explain` lists all\n");
+        assert_eq!(monas(&["explain", far]).err, expected);
+    }
 }
 
 /// What the commands of an example print, in a folder with its files.

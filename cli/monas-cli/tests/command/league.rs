@@ -123,6 +123,13 @@ fn a_referee_whose_packets_cannot_be_sent_goes_on_with_the_game() {
 }
 
 #[test]
+fn a_stopped_game_is_shown_as_such() {
+    let referee = ["referee", "127.0.0.1:0", "--return-port", "0", "--teams", "1,2", "--rules", "hsl"];
+    let answer = given(&referee, "ready 1\nset\nplay\nstop\n");
+    assert!(answer.out.contains("PLAYING, stopped, 1 0 : 0 2"), "{answer:?}");
+}
+
+#[test]
 fn the_number_that_stands_for_no_team_is_refused() {
     let answer = given(&["referee", "127.0.0.1:0", "--return-port", "0", "--teams", "1,255"], "ready 255\n");
     assert_eq!(answer.code, Some(2), "{answer:?}");

@@ -98,6 +98,7 @@ impl Kind {
                     "a whole number".into()
                 }
                 (least, most) if most >= u32::MAX.into() => format!("a whole number from {least}"),
+                (least, most) if least <= i32::MIN.into() => format!("a whole number of at most {most}"),
                 (least, most) => format!("a whole number from {least} to {most}"),
             },
             Kind::Number { least: f64::MIN, most: f64::MAX } => "a number".into(),
@@ -158,6 +159,7 @@ mod tests {
         assert_eq!(Kind::whole().expected(), "a whole number");
         assert_eq!(Kind::whole_from(1).expected(), "a whole number from 1");
         assert_eq!(Kind::whole_in(1, 7).expected(), "a whole number from 1 to 7");
+        assert_eq!(Kind::whole_in(i64::from(i32::MIN), 4).expected(), "a whole number of at most 4");
         assert_eq!(Kind::number_from(2.0).expected(), "a number of at least 2");
         assert_eq!(Kind::Word(vec!["a", "b"]).nearest("a"), Some("did you mean `a`?".into()));
     }
