@@ -304,10 +304,12 @@ impl ServerState {
                 "Upgrade: websocket\r\n",
             );
         };
-        let Some(_slot) = Slot::acquire(self, VIEWER_LIMIT, |state| &state.viewers) else {
-            let text = format!("{VIEWER_LIMIT} pages are open already\n");
+        let slot = Slot::acquire(self, VIEWER_LIMIT, |state| &state.viewers);
+        let refusal = format!("{VIEWER_LIMIT} pages are open already");
+        if slot.is_none() && protocol.is_some() {
+            let text = format!("{refusal}\n");
             return reply(&mut stream, "503 Service Unavailable", "text/plain", text.as_bytes(), "");
-        };
+        }
         #[cfg(unix)]
         let others = self.source.live_state();
         #[cfg(unix)]
@@ -323,6 +325,10 @@ impl ServerState {
             protocol.as_deref().unwrap_or_default()
         );
         stream.write_all(head.as_bytes())?;
+        let Some(_slot) = slot else {
+            viewer::refuse(stream, &refusal);
+            return Ok(());
+        };
         #[cfg(unix)]
         if let (Some(_), Some(run)) = (protocol, others) {
             foxglove::serve(stream, &run, &self.is_over);

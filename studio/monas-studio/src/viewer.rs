@@ -96,14 +96,31 @@ fn exchange(
             send(&mut socket, &frame)?;
         }
     }
-    let reason = "the studio has ended".into();
-    socket.close(Some(CloseFrame { code: CloseCode::Away, reason }))?;
+    close(&mut socket, CloseCode::Away, "the studio has ended")
+}
+
+/// Tells a page why it is not served: a browser shows a page nothing of a refused handshake.
+pub(crate) fn refuse(stream: TcpStream, reason: &str) {
+    let refuse = || {
+        stream.set_write_timeout(Some(SLOWEST))?;
+        let limits = WebSocketConfig::default()
+            .max_message_size(Some(REQUEST_LIMIT))
+            .max_frame_size(Some(REQUEST_LIMIT));
+        close(&mut WebSocket::from_raw_socket(stream, Role::Server, Some(limits)), CloseCode::Again, reason)
+    };
+    // A page that has left needs no report.
+    let _ = refuse();
+}
+
+/// Ends a connection with a reason, and waits for the page's reply.
+fn close(socket: &mut WebSocket<TcpStream>, code: CloseCode, reason: &str) -> tungstenite::Result<()> {
+    socket.close(Some(CloseFrame { code, reason: reason.into() }))?;
     socket.flush()?;
     // What the page has sent is read, or else the system resets the connection, and the page may
     // lose the reason. At its reply the socket reports that it is closed.
     let deadline = now() + FAREWELL;
     while now() < deadline {
-        next_request(&mut socket, deadline.saturating_duration_since(now()))?;
+        next_request(socket, deadline.saturating_duration_since(now()))?;
     }
     Ok(())
 }

@@ -269,6 +269,22 @@ const TESTS = {
     await page.setViewportSize({ width: 1280, height: 720 });
   },
 
+  async 'a page too many says why it shows nothing'({ page }) {
+    const others = await page.evaluate(async () => {
+      window.others = Array.from({ length: 7 }, () => new WebSocket(`ws://${location.host}/socket`));
+      return Promise.all(window.others.map((socket) => new Promise((resolve) => (socket.onmessage = () => resolve(true)))));
+    });
+    assert.equal(others.length, 7);
+    const ninth = await page.context().browser().newPage();
+    await useBuiltPage(ninth);
+    await ninth.goto(page.url());
+    await until(ninth, 'the reason', () => /8 pages are open already. Close one/.test(document.querySelector('.notice')?.textContent ?? ''));
+    assert.equal(await textOf(ninth, '.link'), 'Refused');
+    await page.evaluate(() => window.others.forEach((socket) => socket.close()));
+    await until(ninth, 'that it is served', () => document.querySelectorAll('.body').length === 6 && !document.querySelector('.notice'));
+    await ninth.close();
+  },
+
   async 'an end is said'({ page, run }) {
     const isRetry = (message) => message.type() === 'error' && /WebSocket/.test(message.text());
     const retry = page.waitForEvent('console', isRetry);

@@ -31,6 +31,8 @@ const FIRST_RETRY = 500;
 const LAST_RETRY = 5000;
 /** The server's word that it ends. */
 const GOING_AWAY = 1001;
+/** The server's word that it has too many pages. */
+const TRY_AGAIN_LATER = 1013;
 
 /** A chart as the page knows it. */
 export interface ChartState extends Omit<ChartNews, 'steps'> {
@@ -64,6 +66,8 @@ export class StudioClient {
   connection = $state<'connecting' | 'open' | 'closed'>('connecting');
   /** Whether the server said that it ends. */
   hasEnded = $state(false);
+  /** Why the server does not serve this page, if it said so. */
+  refusal = $state('');
   run = $state.raw<RunFacts | null>(null);
   now = $state(0);
   alarms = $state.raw<string[]>([]);
@@ -115,9 +119,10 @@ export class StudioClient {
     const socket = new WebSocket(`${scheme}://${location.host}/socket${location.search}`);
     this.#socket = socket;
     socket.onopen = () => {
-      this.connection = 'open';
-      this.hasEnded = false;
-      this.#retry = FIRST_RETRY;
+      // One that was refused may be refused again.
+      if (this.refusal === '') {
+        this.#isServed();
+      }
       this.#asked.clear();
       if (this.#watched) {
         this.#send({ type: 'watch', ...this.#watched });
@@ -129,7 +134,12 @@ export class StudioClient {
         this.#send({ type: 'values', key: this.#valuesKey });
       }
     };
-    socket.onmessage = (event) => this.#take(JSON.parse(String(event.data)) as ServerMessage);
+    socket.onmessage = (event) => {
+      if (this.refusal !== '') {
+        this.#isServed();
+      }
+      this.#take(JSON.parse(String(event.data)) as ServerMessage);
+    };
     socket.onclose = (event) => {
       if (this.#socket !== socket) {
         return;
@@ -139,9 +149,17 @@ export class StudioClient {
       this.#requests.clear();
       // A connection that cannot be opened afterwards does not take back what was said.
       this.hasEnded ||= event.code === GOING_AWAY;
+      this.refusal = event.code === TRY_AGAIN_LATER ? event.reason : '';
       setTimeout(() => this.connect(), this.#retry);
       this.#retry = Math.min(this.#retry * 2, LAST_RETRY);
     };
+  }
+
+  #isServed(): void {
+    this.connection = 'open';
+    this.hasEnded = false;
+    this.refusal = '';
+    this.#retry = FIRST_RETRY;
   }
 
   watch(host: string, topic: string): void {
