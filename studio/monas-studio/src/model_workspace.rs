@@ -11,8 +11,8 @@ use serde_json::{Value, json};
 /// The names of files that a folder is searched for.
 const ENDINGS: [&str; 8] = ["srm", "sag", "suc", "aip", "ft", "eac", "iac", "stct"];
 
-/// The longest model, in bytes.
-pub(crate) const TEXT_LIMIT: u64 = 1 << 20;
+/// The longest file, in bytes: a request has its text with escapes.
+const FILE_LIMIT: u64 = 1 << 19;
 
 /// What models mean. Its replies are read by the page: positions are counted in
 /// UTF-16 code units, as a page counts them.
@@ -106,6 +106,9 @@ impl ModelWorkspace {
     /// what the file contains now.
     pub(crate) fn save(&self, file: usize, text: &str, known: &str) -> Result<Value, String> {
         let file = self.file(file)?;
+        if text.len() as u64 > FILE_LIMIT {
+            return Err(format!("{} bytes are too many to edit here, at most {FILE_LIMIT}", text.len()));
+        }
         let _saving = self.saving.lock().unwrap_or_else(PoisonError::into_inner);
         let present = file.read()?;
         if revision(&present) != known {
@@ -156,8 +159,10 @@ fn is_model(path: &Path) -> bool {
 
 fn read_text(path: &Path) -> io::Result<String> {
     let size = fs::metadata(path)?.len();
-    if size > TEXT_LIMIT / 2 {
-        return Err(io::Error::other(format!("{size} bytes are too many to edit here")));
+    if size > FILE_LIMIT {
+        return Err(io::Error::other(format!(
+            "{size} bytes are too many to edit here, at most {FILE_LIMIT}"
+        )));
     }
     fs::read_to_string(path)
 }

@@ -125,6 +125,21 @@ fn a_file_that_another_has_changed_is_not_overwritten() {
 }
 
 #[test]
+fn a_text_that_could_not_be_opened_again_is_not_saved() {
+    let models = Models::local();
+    let mut viewer = Viewer::open(&models.studio).unwrap();
+    let mut revision = ask(&mut viewer, json!({"type": "model open", "file": 0}))["revision"].clone();
+    for (size, is_saved) in [(1 << 19, true), ((1 << 19) + 1, false)] {
+        let save = json!({"type": "model save", "file": 0, "text": "x".repeat(size), "revision": revision});
+        let saved = ask(&mut viewer, save);
+        assert_eq!(saved["done"], is_saved, "{saved}");
+        let opened = ask(&mut viewer, json!({"type": "model open", "file": 0}));
+        assert_eq!(opened["text"].as_str().map(str::len), Some(1 << 19));
+        revision = opened["revision"].clone();
+    }
+}
+
+#[test]
 fn no_other_file_is_read_or_written() {
     let models = Models::local();
     let mut viewer = Viewer::open(&models.studio).unwrap();

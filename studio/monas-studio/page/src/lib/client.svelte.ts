@@ -33,6 +33,8 @@ const LAST_RETRY = 5000;
 const GOING_AWAY = 1001;
 /** The server's word that it has too many pages. */
 const TRY_AGAIN_LATER = 1013;
+/** The longest request that may change a run or edit models, in bytes: a longer one ends the connection. */
+const REQUEST_LIMIT = 1 << 20;
 
 /** A chart as the page knows it. */
 export interface ChartState extends Omit<ChartNews, 'steps'> {
@@ -231,6 +233,11 @@ export class StudioClient {
     const id = this.#lastRequest;
     if (this.#socket?.readyState !== WebSocket.OPEN) {
       return Promise.resolve({ done: false, reason: 'the studio does not answer' });
+    }
+    const size = new TextEncoder().encode(JSON.stringify({ id, ...message })).length;
+    if (size > REQUEST_LIMIT) {
+      const kilobytes = (bytes: number) => `${Math.ceil(bytes / 1024)} KB`;
+      return Promise.resolve({ done: false, reason: `too long: ${kilobytes(size)}, at most ${kilobytes(REQUEST_LIMIT)} can be sent` });
     }
     return new Promise((resolve) => {
       this.#requests.set(id, resolve);
