@@ -16,6 +16,8 @@ const MODELS = {
   'cases.suc': project('methodology/aseme-models/tests/golden/roles/in.suc'),
   'roles.srm': project('methodology/aseme-models/tests/golden/table/in.srm'),
 };
+/** A file whose lines end in different ways. */
+const MIXED = 'Liveness:\r\n  a = B\n';
 const SOON = Number(process.env.SOON ?? 60_000);
 
 async function until(page, what, condition, argument) {
@@ -154,6 +156,11 @@ const TESTS = {
     await shot('editor-transition');
     await expression.click();
     await page.keyboard.press('Control+a');
+    await page.keyboard.type('[0 < Ball.y]');
+    await save(page);
+    assert.match(saved(folder, 'attacker.srm'), /CONDITION -> LeftKick : \[0 < Ball\.y\]/);
+    await expression.click();
+    await page.keyboard.press('Control+a');
     await page.keyboard.type('[0 <= Ball.y]');
     await page.keyboard.press('Escape');
     await page.keyboard.press('Enter');
@@ -201,6 +208,12 @@ const TESTS = {
     await near.fill('near = 30 cm');
     await near.press('Enter');
     await untilText(page, 'the text has it', /near = 30 cm\s+# metres/);
+    await near.fill('near = 31 cm');
+    await save(page);
+    assert.match(saved(folder, 'attacker.srm'), /near = 31 cm {13}# metres; below this distance/);
+    await near.fill('near = 30 cm');
+    await near.press('Enter');
+    await untilText(page, 'the text has it again', /near = 30 cm\s+# metres/);
     const table = await page.locator('.form table').innerText();
     assert.match(table, /LeftKick\s+.*(Narukom|hardware)/);
     await shot('editor-role-form');
@@ -282,12 +295,81 @@ const TESTS = {
     assert.match(saved(folder, 'roles.srm'), /technology = Rust/);
   },
 
+  async 'each file keeps its own text and changes, whatever was shown between'({ page, folder }) {
+    await openModel(page, 'roles.srm');
+    await openModel(page, 'attack.aip');
+    await openModel(page, 'roles.srm');
+    assert.equal(await textOf(page), saved(folder, 'roles.srm'));
+    await goBehind(page, 'Role');
+    await page.keyboard.type('X');
+    await page.keyboard.press('Escape');
+    const changed = await textOf(page);
+    await openModel(page, 'attack.aip');
+    assert.equal(await textOf(page), saved(folder, 'attack.aip'));
+    const header = () => page.locator('.panel.text header').innerText();
+    assert.match(await header(), /1 other file not saved/);
+    const isWarned = () => page.evaluate(() => !window.dispatchEvent(new Event('beforeunload', { cancelable: true })));
+    assert.ok(await isWarned(), 'another file has changes');
+    await openModel(page, 'roles.srm');
+    assert.equal(await textOf(page), changed);
+    await page.locator('button', { hasText: 'Undo' }).click();
+    assert.equal(await textOf(page), saved(folder, 'roles.srm'));
+    assert.ok(!(await isWarned()), 'nothing has changes');
+  },
+
+  async 'a file that cannot be edited shows nothing of another'({ page, folder }) {
+    await openModel(page, 'roles.srm');
+    await page.locator('select[aria-label="Model"]').selectOption({ label: 'mixed.srm' });
+    await until(page, 'why', () => /end in different ways/.test(document.querySelector('.panel.text [role=alert]')?.textContent ?? ''));
+    assert.equal(await page.locator('.panel.drawing table, .panel.drawing svg').count(), 0);
+    await page.keyboard.press('Control+s');
+    await until(page, 'that nothing is saved', () => /the file was not opened/.test(document.querySelector('.editor .outcome')?.textContent ?? ''));
+    assert.equal(saved(folder, 'mixed.srm'), MIXED);
+  },
+
+  async 'saving again at once is no conflict'({ page, folder }) {
+    await openModel(page, 'roles.srm');
+    await goBehind(page, 'Role');
+    await page.keyboard.type('s');
+    await page.evaluate(() => {
+      for (let presses = 0; presses < 3; presses += 1) {
+        const key = { key: 's', code: 'KeyS', ctrlKey: true, bubbles: true, cancelable: true };
+        document.querySelector('.code-area .cm-content').dispatchEvent(new KeyboardEvent('keydown', key));
+      }
+    });
+    await until(page, 'it is saved', () => /saved/.test(document.querySelector('.editor .outcome')?.textContent ?? ''));
+    await page.waitForTimeout(300);
+    assert.equal(await page.locator('.conflict').count(), 0);
+    assert.equal(saved(folder, 'roles.srm'), await textOf(page));
+    await page.locator('button', { hasText: 'Undo' }).click();
+    await save(page);
+  },
+
+  async 'a text that is too long is refused with the reason, and the connection goes on'({ page }) {
+    await openModel(page, 'attacker.srm');
+    const insert = (text) => page.evaluate((text) => {
+      const content = document.querySelector('.code-area .cm-content');
+      const view = content.cmTile?.view ?? content.cmView.view;
+      view.dispatch({ changes: { from: view.state.doc.length, insert: text } });
+    }, text);
+    await insert(`${'# long\n'.repeat(200_000)}`);
+    await until(page, 'the reason', () => /too long: \d+ KB/.test(document.querySelector('.editor .outcome')?.textContent ?? ''));
+    assert.equal(await page.locator('.link').innerText(), 'Models');
+    await page.locator('button', { hasText: 'Undo' }).click();
+    await until(page, 'the chart', () => document.querySelectorAll('.drawing .node.BASIC').length > 10);
+    await until(page, 'no reason any more', () => !document.querySelector('.editor .outcome'));
+  },
+
   async 'it is readable in the dark and on a phone'({ page, shot }) {
     await openModel(page, 'attacker.srm');
     await until(page, 'the chart', () => document.querySelectorAll('.drawing .node.BASIC').length > 10);
     await page.locator('button[aria-label="Light or dark"]').click();
     await page.locator('.drawing [data-state$="TurnAround"]').first().click();
     await shot('editor-dark');
+    await page.setViewportSize({ width: 800, height: 600 });
+    await page.waitForTimeout(300);
+    const [text, drawing] = await Promise.all(['.panel.text', '.panel.drawing'].map((panel) => page.locator(panel).boundingBox()));
+    assert.ok(text.y + text.height <= drawing.y, `the text ends at ${text.y + text.height}, the drawing begins at ${drawing.y}`);
     await page.setViewportSize({ width: 390, height: 844 });
     await page.waitForTimeout(300);
     const width = await page.evaluate(() => document.documentElement.scrollWidth);
@@ -300,8 +382,12 @@ const TESTS = {
 
 /** A swap of an edited role into a running robot, with the verdict before it. */
 async function swapTest({ page, shot }) {
+  // a run is shown first, whatever can be edited
+  await until(page, 'the run', () => document.querySelectorAll('.robots li').length === 6);
   await page.locator('[role=tab]', { hasText: 'Editor' }).click();
   await until(page, 'the chart', () => document.querySelectorAll('.drawing .node.BASIC').length > 10);
+  assert.equal(await textOf(page), original('attacker.srm'));
+  assert.doesNotMatch(await page.locator('.panel.text header').innerText(), /not saved/);
   await page.locator('button', { hasText: 'Swap…' }).click();
   const select = page.locator('select[aria-label="Running chart"]');
   await until(page, 'the running charts', () => [...document.querySelectorAll('select[aria-label="Running chart"] option')].some((one) => one.textContent?.includes('blue-2')));
@@ -332,6 +418,7 @@ export async function testEditor({ program, browser, open, screenshots, check })
   for (const [name, path] of Object.entries(MODELS)) {
     copyFileSync(path, join(folder, name));
   }
+  writeFileSync(join(folder, 'mixed.srm'), MIXED);
   const shotOf = (page) => Object.assign((name) => page.screenshot({ path: `${screenshots}/${name}.png` }), { folder: screenshots });
   const alone = start(program, ['studio', '--edit', join(folder, 'attacker.srm'), '--edit', folder]);
   try {

@@ -38,6 +38,8 @@ function shapeOf(outline: Outline | null, edit: ModelEdit): string {
 /** A file that was opened. */
 interface OpenFile {
   state: EditorState;
+  /** Its text here. */
+  text: string;
   saved: string;
   revision: string;
   lineBreak: string;
@@ -45,7 +47,8 @@ interface OpenFile {
 
 /** The models that are edited: one at a time is shown. Every edit is one of the text. */
 export class ModelEditor {
-  file = $state(-1);
+  /** The name of the file that is shown: its number is another one when the studio has begun anew. */
+  name = $state('');
   text = $state('');
   saved = $state('');
   isLoading = $state(false);
@@ -59,12 +62,18 @@ export class ModelEditor {
   conflict = $state.raw<{ text: string; revision: string } | null>(null);
   canUndo = $state(false);
   canRedo = $state(false);
+  /** The names of all files with changes that are not saved. */
+  unsaved = $state.raw<string[]>([]);
   selected = $state<number | null>(null);
   transition = $state<number | null>(null);
 
   #client: StudioClient;
-  #files = new Map<number, OpenFile>();
+  #files = new Map<string, OpenFile>();
   #view: EditorView | null = null;
+  /** The name of the file whose text the view has: not the one that is shown while that is read. */
+  #inView = '';
+  #complaint: Outcome | null = null;
+  #saves: Promise<void> = Promise.resolve();
   #edits: Promise<boolean> = Promise.resolve(true);
   #outlineTimer = 0;
   #checkTimer = 0;
@@ -73,8 +82,9 @@ export class ModelEditor {
     this.#client = client;
   }
 
-  get name(): string {
-    return this.#client.models?.files[this.file] ?? '';
+  /** The number of the file that is shown, or -1. */
+  get file(): number {
+    return this.#client.models?.files.indexOf(this.name) ?? -1;
   }
 
   get isWritable(): boolean {
@@ -96,7 +106,9 @@ export class ModelEditor {
 
   /** Shows the editor in an element. */
   mount(parent: HTMLElement): () => void {
-    this.#view = new EditorView({ parent, state: this.#files.get(this.file)?.state ?? this.#newState('') });
+    const known = this.#files.get(this.name);
+    this.#inView = known ? this.name : '';
+    this.#view = new EditorView({ parent, state: known?.state ?? this.#newState('', false) });
     return () => {
       this.#keepState();
       this.#view?.destroy();
@@ -106,45 +118,58 @@ export class ModelEditor {
 
   async open(file: number): Promise<void> {
     this.#keepState();
-    this.file = file;
+    this.name = this.#client.models?.files[file] ?? '';
     this.outcome = null;
     this.conflict = null;
     this.selected = null;
     this.transition = null;
     this.fault = '';
-    if (!this.#files.has(file)) {
-      await this.reload();
+    if (this.#files.has(this.name)) {
+      this.#show(this.name);
       return;
     }
-    this.#show(file);
+    this.#showNothing();
+    await this.reload();
   }
 
   /** Reads the file again; what was not saved is lost. */
   async reload(): Promise<void> {
-    const file = this.file;
+    const { file, name } = this;
     this.isLoading = true;
     const reply = await this.#client.model('open', { file });
-    this.isLoading = false;
-    if (file !== this.file) {
+    if (name !== this.name) {
       return;
     }
+    this.isLoading = false;
     if (!reply.done || reply.text === undefined || reply.revision === undefined) {
       this.fault = reply.reason ?? 'the file cannot be read';
       return;
     }
-    this.#take(file, reply.text, reply.revision);
+    this.#take(name, reply.text, reply.revision);
+  }
+
+  /** Goes on after the connection was lost: reads what is missing. */
+  resume(): void {
+    if (this.name === '' || this.file < 0) {
+      return;
+    }
+    if (!this.#files.has(this.name)) {
+      void this.open(this.file);
+    } else if (this.#view && this.#inView === this.name && this.outline?.text !== this.text) {
+      this.#changed();
+    }
   }
 
   /** Goes on with what the file contains now. */
   takeTheirs(): void {
     if (this.conflict) {
-      this.#take(this.file, this.conflict.text, this.conflict.revision);
+      this.#take(this.name, this.conflict.text, this.conflict.revision);
     }
   }
 
   /** Keeps what is here: the next save replaces what the file contains now. */
   keepMine(): void {
-    const known = this.#files.get(this.file);
+    const known = this.#files.get(this.name);
     if (known && this.conflict) {
       known.revision = this.conflict.revision;
       this.conflict = null;
@@ -152,21 +177,40 @@ export class ModelEditor {
     }
   }
 
-  async save(): Promise<void> {
-    const [file, known, text] = [this.file, this.#files.get(this.file), this.text];
-    if (!known || !this.isWritable) {
+  /** Saves after the edits and the save that go on: these change the text and the revision. */
+  save(): Promise<void> {
+    const name = this.name;
+    this.#saves = this.#saves.then(async () => {
+      await this.#edits;
+      await this.#save(name);
+    });
+    return this.#saves;
+  }
+
+  async #save(name: string): Promise<void> {
+    const known = this.#files.get(name);
+    if (!known) {
+      this.outcome = { done: false, lines: ['not saved: the file was not opened'] };
+      return;
+    }
+    if (!this.isWritable) {
       this.outcome = { done: false, lines: ['not saved: this page may not write files'] };
       return;
     }
+    const file = this.#client.models?.files.indexOf(name) ?? -1;
+    const text = known.text;
     const written = text.replaceAll('\n', known.lineBreak);
     const reply = await this.#client.model('save', { file, text: written, revision: known.revision });
     if (reply.done && reply.revision) {
       [known.revision, known.saved] = [reply.revision, text];
-      if (file === this.file) {
+      this.#noteUnsaved();
+      if (name === this.name) {
         this.saved = text;
         this.conflict = null;
-        this.outcome = { done: true, lines: [`saved ${this.name}`] };
+        this.outcome = { done: true, lines: [`saved ${name}`] };
       }
+    } else if (name !== this.name) {
+      return;
     } else if (reply.text !== undefined && reply.revision !== undefined) {
       this.conflict = { text: reply.text, revision: reply.revision };
       this.outcome = null;
@@ -244,27 +288,30 @@ export class ModelEditor {
   /** Checks the text at once. */
   async check(): Promise<void> {
     clearTimeout(this.#checkTimer);
-    const [file, text] = [this.file, this.text];
+    const { file, name, text } = this;
+    if (this.#inView !== name) {
+      return;
+    }
     this.isChecking = true;
     const reply = await this.#client.model('check', { file, text });
-    if (file === this.file && text === this.text) {
+    if (name === this.name && text === this.text) {
       this.isChecking = false;
       if (reply.done) {
         this.checked = { text, findings: reply.findings ?? [], stopped: reply.stopped === true };
         this.#mark();
       } else {
-        this.outcome = { done: false, lines: [`not checked: ${reply.reason ?? ''}`] };
+        this.#complain(`not checked: ${reply.reason ?? ''}`);
       }
     }
   }
 
-  #newState(doc: string): EditorState {
+  #newState(doc: string, isWritable: boolean): EditorState {
     const ask = (at: number) => this.#client.model('complete', { text: this.text, at });
     const change = () => this.#changed();
-    return EditorState.create({ doc, extensions: textExtensions(ask, true, () => void this.save(), change) });
+    return EditorState.create({ doc, extensions: textExtensions(ask, isWritable, () => void this.save(), change) });
   }
 
-  #take(file: number, read: string, revision: string): void {
+  #take(name: string, read: string, revision: string): void {
     const breaks = read.match(/\r\n?|\n/g) ?? [];
     const kinds = new Set(breaks);
     if (kinds.size > 1 || kinds.has('\r')) {
@@ -273,37 +320,59 @@ export class ModelEditor {
     }
     const lineBreak = kinds.has('\r\n') ? '\r\n' : '\n';
     const text = read.replaceAll('\r\n', '\n');
-    this.#files.set(file, { state: this.#newState(text), saved: text, revision, lineBreak });
+    this.#files.set(name, { state: this.#newState(text, true), text, saved: text, revision, lineBreak });
     this.conflict = null;
-    this.#show(file);
+    this.#show(name);
   }
 
   #keepState(): void {
-    const known = this.#files.get(this.file);
+    const known = this.#files.get(this.#inView);
     if (known && this.#view) {
       known.state = this.#view.state;
     }
   }
 
-  #show(file: number): void {
-    const known = this.#files.get(file);
+  #show(name: string): void {
+    const known = this.#files.get(name);
     if (!known) {
       return;
     }
+    this.#inView = name;
     this.#view?.setState(known.state);
     this.saved = known.saved;
     this.outline = null;
     this.checked = null;
+    this.isLoading = false;
     this.#changed();
     void this.#understand();
   }
 
+  /** Shows no text, which cannot be written to, while a file is read. */
+  #showNothing(): void {
+    clearTimeout(this.#outlineTimer);
+    clearTimeout(this.#checkTimer);
+    this.#inView = '';
+    this.#view?.setState(this.#newState('', false));
+    [this.text, this.saved] = ['', ''];
+    [this.outline, this.checked] = [null, null];
+    [this.canUndo, this.canRedo, this.isChecking] = [false, false, false];
+  }
+
+  #noteUnsaved(): void {
+    const changed = [...this.#files].filter(([, file]) => file.text !== file.saved);
+    this.unsaved = changed.map(([name]) => name);
+  }
+
   #changed(): void {
-    const state = this.#view?.state;
-    if (!state) {
+    const known = this.#files.get(this.#inView);
+    if (!known) {
       return;
     }
+    // A file may be read while the editor is not shown.
+    const state = this.#view?.state ?? known.state;
     this.text = state.doc.toString();
+    known.text = this.text;
+    this.#noteUnsaved();
     [this.canUndo, this.canRedo] = [undoDepth(state) > 0, redoDepth(state) > 0];
     clearTimeout(this.#outlineTimer);
     clearTimeout(this.#checkTimer);
@@ -315,12 +384,15 @@ export class ModelEditor {
   /** Asks what is understood of the text. */
   async #understand(): Promise<void> {
     clearTimeout(this.#outlineTimer);
-    const [file, text] = [this.file, this.text];
+    const { file, name, text } = this;
     const { done, picture, parts, findings, reason } = await this.#client.model('outline', { file, text });
-    if (file !== this.file || text !== this.text) {
+    if (name !== this.name || text !== this.text) {
       return;
     }
     if (done && parts) {
+      if (this.outcome === this.#complaint) {
+        this.outcome = null;
+      }
       this.outline = { text, picture: picture ?? null, parts, findings: findings ?? [] };
       const nodes = picture?.nodes.length ?? 0;
       const transitions = picture?.transitions.length ?? 0;
@@ -328,8 +400,14 @@ export class ModelEditor {
       this.transition = this.transition !== null && this.transition < transitions ? this.transition : null;
       this.#mark();
     } else {
-      this.outcome = { done: false, lines: [reason ?? 'the text cannot be read'] };
+      this.#complain(`not read: ${reason ?? ''}`);
     }
+  }
+
+  /** Says why the text is not read or checked, until it is. */
+  #complain(reason: string): void {
+    this.#complaint = { done: false, lines: [reason] };
+    this.outcome = this.#complaint;
   }
 
   /** Marks the findings in the text. */

@@ -98,7 +98,7 @@ export function textExtensions(ask: Ask, isWritable: boolean, onsave: () => void
 }
 
 /** The editor of an expression, on one line. */
-export function expressionExtensions(ask: Ask, label: string, onenter: () => void, onchange: (text: string) => void): Extension {
+export function expressionExtensions(ask: Ask, label: string, onenter: () => void, onsave: () => void, onchange: (text: string) => void): Extension {
   return [
     history(),
     bracketMatching(),
@@ -109,6 +109,6 @@ export function expressionExtensions(ask: Ask, label: string, onenter: () => voi
     EditorState.transactionFilter.of((transaction) => (transaction.newDoc.lines > 1 ? [] : transaction)),
     EditorView.contentAttributes.of({ 'aria-label': label, spellcheck: 'false', autocapitalize: 'off' }),
     EditorView.updateListener.of((update) => update.docChanged && onchange(update.state.doc.toString())),
-    keymap.of([...completionKeymap, { key: 'Enter', run: () => (onenter(), true) }, ...historyKeymap, ...defaultKeymap]),
+    keymap.of([{ key: 'Mod-s', run: () => (onsave(), true), preventDefault: true }, ...completionKeymap, { key: 'Enter', run: () => (onenter(), true) }, ...historyKeymap, ...defaultKeymap]),
   ];
 }
