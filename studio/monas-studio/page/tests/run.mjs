@@ -266,6 +266,12 @@ const TESTS = {
       assert.ok(width <= 390, `view ${key} is ${width} pixels wide`);
     }
     await shot(page, 'phone');
+    // one column in a window that is not high
+    await page.setViewportSize({ width: 800, height: 600 });
+    await page.waitForTimeout(300);
+    const heights = await page.evaluate(() => ['[aria-label=Field]', '.robots'].map((panel) => document.querySelector(panel)?.clientHeight ?? 0));
+    assert.ok(heights.every((height) => height > 100), `field and robots are ${heights} pixels high`);
+    await shot(page, 'small');
     await page.setViewportSize({ width: 1280, height: 720 });
   },
 
