@@ -399,6 +399,27 @@ async function tape(browser) {
   await page.getByRole('button', { name: 'event ›' }).click();
   await until(page, 'the kick-off', () => /kick-off/.test(document.querySelector('.latest')?.textContent ?? ''));
   assert.equal(await time(), 10.9);
+  // keys mean the same while a button or the timeline has the focus
+  const isAt = (clock) => until(page, clock, (clock) => document.querySelector('.time')?.textContent === clock, clock);
+  await page.keyboard.press('ArrowRight');
+  await isAt('0:11.9');
+  await page.getByLabel('Moment').focus();
+  await page.keyboard.press('ArrowLeft');
+  await isAt('0:10.9');
+  const title = await textOf(page, '.chart h2');
+  await page.keyboard.press('j');
+  await until(page, 'another chart', (title) => document.querySelector('.chart h2')?.textContent?.trim() !== title, title);
+  await page.keyboard.press('k');
+  // each event is reached from the one before, however near it is
+  const places = await page.locator('.marks button').evaluateAll((all) => new Set(all.map((one) => one.style.left)).size);
+  await seek(0);
+  let reached = 0;
+  for (; (await page.getByRole('button', { name: 'event ›' }).isEnabled()) && reached <= places; reached += 1) {
+    const before = await page.getByLabel('Moment').inputValue();
+    await page.keyboard.press(']');
+    await until(page, 'the next event', (before) => document.querySelector('[aria-label=Moment]')?.value !== before, before);
+  }
+  assert.equal(reached, places);
   // playing
   await page.getByLabel('Speed', { exact: true }).selectOption('16');
   await page.locator('.play').click();
