@@ -99,7 +99,7 @@ fn exchange(
     close(&mut socket, CloseCode::Away, "the studio has ended")
 }
 
-/// Tells a page why it is not served: a browser shows a page nothing of a refused handshake.
+/// Closes a connection with the reason: a browser does not give a page that of a refused handshake.
 pub(crate) fn refuse(stream: TcpStream, reason: &str) {
     let refuse = || {
         stream.set_write_timeout(Some(SLOWEST))?;

@@ -224,9 +224,9 @@ fn the_end_of_the_studio_reaches_viewers_with_requests_under_way() {
     let end = std::thread::Builder::new().spawn(move || drop(studio)).unwrap();
     let code = loop {
         // A request that the studio has not read when it ends.
-        let _ = viewer.0.send(tungstenite::Message::text(r#"{"type": "unwatch"}"#));
+        let _ = viewer.0.send(Message::text(r#"{"type": "unwatch"}"#));
         match viewer.0.read() {
-            Ok(tungstenite::Message::Close(reason)) => break reason.map(|reason| u16::from(reason.code)),
+            Ok(Message::Close(reason)) => break reason.map(|reason| u16::from(reason.code)),
             Ok(_) => {}
             Err(error) => panic!("{error}"),
         }
@@ -269,7 +269,7 @@ fn viewers_that_do_not_read_block_no_others_and_their_number_is_limited() {
         run.note(&text);
         viewer.wait(|message| (message["scene"]["bodies"][0]["label"] == text.as_str()).then_some(()));
     }
-    // A page is told nothing of a refused handshake.
+    // A browser gives a page no reason of a refused handshake.
     let mut refused = Viewer::open(&studio).unwrap();
     let Message::Close(Some(close)) = refused.0.read().unwrap() else { panic!("it is not served") };
     assert_eq!((close.code, close.reason.as_str()), (CloseCode::Again, "8 pages are open already"));
@@ -351,7 +351,7 @@ impl FoxgloveClient {
 
     fn object(&mut self, operation: &str) -> Value {
         loop {
-            if let tungstenite::Message::Text(text) = self.0.read().unwrap() {
+            if let Message::Text(text) = self.0.read().unwrap() {
                 let object: Value = serde_json::from_str(text.as_str()).unwrap();
                 if object["op"] == operation {
                     return object;
@@ -361,7 +361,7 @@ impl FoxgloveClient {
     }
 
     fn send(&mut self, object: &Value) {
-        self.0.send(tungstenite::Message::text(object.to_string())).unwrap();
+        self.0.send(Message::text(object.to_string())).unwrap();
     }
 }
 
@@ -399,7 +399,7 @@ fn clients_of_the_foxglove_protocol_list_topics_and_decode_their_messages() {
             // The subscription has begun once a message arrives.
             run.note("for others");
             match client.0.read().unwrap() {
-                tungstenite::Message::Binary(frame) => break frame,
+                Message::Binary(frame) => break frame,
                 other => assert!(other.is_text(), "{other:?}"),
             }
         };
@@ -425,7 +425,7 @@ fn decoded<T>(
     let message_type = pool.get_message_by_name(channel["schemaName"].as_str().unwrap()).unwrap();
     client.send(&json!({"op": "subscribe", "subscriptions": [{"id": id, "channelId": channel["id"]}]}));
     loop {
-        if let tungstenite::Message::Binary(frame) = client.0.read().unwrap()
+        if let Message::Binary(frame) = client.0.read().unwrap()
             && frame[1..5] == id.to_le_bytes()
             && let Some(found) = find(&monas_studio::message_json(&message_type, &frame[13..]).unwrap())
         {
