@@ -613,6 +613,17 @@ async function steering(browser) {
   await control.getByLabel('Value', { exact: true }).fill('0.2');
   await control.getByRole('button', { name: 'Set', exact: true }).click();
   await outcome(/walk_forward=0\.2: done/);
+  // the chart of an agent that was removed says so, and agents can be added to its host again
+  await page.locator('tr.choice', { hasText: 'blue-3' }).click();
+  const removal = page.getByRole('region', { name: /Control Attacker of blue-3/ }).getByRole('button', { name: /^Remove/ });
+  await removal.click();
+  await removal.click();
+  await until(page, 'five agents', () => document.querySelectorAll('tr.choice').length === 5);
+  assert.ok((await page.locator('[aria-label="Host of the agents"] option').allTextContents()).includes('blue-3'));
+  await page.locator('h2').first().click();
+  await page.keyboard.press('1');
+  await page.locator('.robots button', { hasText: 'blue-3' }).getByText('no agent').waitFor();
+  assert.equal(await page.locator('.robots .state').count(), 1);
   // a message by form
   await page.locator('h2').first().click();
   await page.keyboard.press('3');
