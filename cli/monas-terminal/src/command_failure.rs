@@ -53,6 +53,7 @@ impl CommandFailure {
         known.dedup();
         let hint = match nearest(name, known.iter().copied()) {
             Some(near) => format!("did you mean `{near}`?"),
+            None if known.is_empty() => "it has none".to_owned(),
             None => format!("it has {}", known.join(", ")),
         };
         CommandFailure::Usage(format!("the {place} has no {what} `{name}`; {hint}"))

@@ -42,11 +42,15 @@ enum TimeMode {
 /// The run of a tape.
 ///
 /// # Errors
-/// The reason why the run cannot be replayed.
-pub(crate) fn run_of(overview: &TapeOverview) -> Result<RecordedRun, String> {
+/// The reason why the run cannot be replayed, with the file.
+pub(crate) fn run_of(tape: &Path, overview: &TapeOverview) -> Result<RecordedRun, String> {
     if let Some(damage) = overview.damages.first() {
         return Err(format!("{damage}; `monas tape recover` keeps what can be read"));
     }
+    complete_run(overview).map_err(|reason| format!("{}: {reason}", tape.display()))
+}
+
+fn complete_run(overview: &TapeOverview) -> Result<RecordedRun, String> {
     let run = description(overview)?;
     if let Some(of) = overview.facts.iter().find(|facts| facts.name == CONTINUATION) {
         let of = of.entries.get("of").map_or("another tape", String::as_str);
@@ -164,7 +168,19 @@ pub(crate) fn chosen_hosts(
     format: Format,
 ) -> Result<Vec<HostConfig>, CommandFailure> {
     let hosts = match config {
-        Some(path) => run.present(load(path, "", None, format)?),
+        Some(path) => {
+            let hosts = load(path, "", None, format)?;
+            if let [first, ..] = &hosts[..]
+                && !hosts.iter().any(|host| run.robots.contains(&host.name))
+            {
+                let (robots, path) = (run.robots.join(", "), path.display());
+                return Err(CommandFailure::Usage(format!(
+                    "the tape has no robot `{}` of {path}; it has {robots}",
+                    first.name
+                )));
+            }
+            run.present(hosts)
+        }
         None => configured(recording, run, format)?,
     };
     choose(hosts, agents)
@@ -172,11 +188,12 @@ pub(crate) fn chosen_hosts(
 
 /// The hosts of a recording with all their agents, from the recorded configuration and models.
 pub(crate) fn recorded_hosts(
+    tape: &Path,
     recording: &Recording,
     format: Format,
 ) -> Result<Vec<HostConfig>, CommandFailure> {
     let overview = recording.overview().map_err(failed(format))?;
-    let run = run_of(&overview).map_err(|message| CommandFailure::Failed(format, message))?;
+    let run = run_of(tape, &overview).map_err(|message| CommandFailure::Failed(format, message))?;
     configured(recording, &run, format)
 }
 

@@ -94,7 +94,7 @@ fn gather(
 ) -> Result<BTreeSet<String>, CommandFailure> {
     let mut unknown = BTreeSet::new();
     let recording = Recording::open(tape).map_err(failed(format))?;
-    let hosts = recorded_hosts(&recording, format)?;
+    let hosts = recorded_hosts(tape, &recording, format)?;
     // By host, agent and the number of the chart in the agent.
     let mut places: Vec<(&str, &str, u32, usize)> = Vec::new();
     for host in &hosts {

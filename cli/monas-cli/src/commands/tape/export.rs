@@ -33,7 +33,10 @@ pub(crate) fn execute(
                 CommandFailure::Failed(Format::Text, format!("cannot write {}: {error}", path.display()))
             };
             let mut file = AtomicFile::create(path).map_err(cannot)?;
-            write(arguments, &recording, &mut file)?;
+            write(arguments, &recording, &mut file).map_err(|failure| match failure {
+                CommandFailure::Output(error) => cannot(error),
+                other => other,
+            })?;
             file.commit().map_err(cannot)?;
         }
     }

@@ -53,7 +53,8 @@ pub(crate) fn execute(
     arguments.listen.require_no_control()?;
     let recording = Recording::open(&arguments.file).map_err(failed(format))?;
     let overview = recording.overview().map_err(failed(format))?;
-    let run = run_of(&overview).map_err(|message| CommandFailure::Failed(format, message))?;
+    let run =
+        run_of(&arguments.file, &overview).map_err(|message| CommandFailure::Failed(format, message))?;
     run.warn(console.err)?;
     let hosts = chosen_hosts(&recording, &run, arguments.config.as_deref(), &arguments.agents, format)?;
     let replay =

@@ -57,7 +57,7 @@ pub(crate) fn execute(
     let refused = |reason: String| CommandFailure::Failed(format, reason);
     let recording = Recording::open(&arguments.file).map_err(failed(format))?;
     let overview = recording.overview().map_err(failed(format))?;
-    let run = run_of(&overview).map_err(refused)?;
+    let run = run_of(&arguments.file, &overview).map_err(refused)?;
     run.warn(console.err)?;
     let seed =
         run.seed().ok_or_else(|| refused("only a run in simulated time can be played again".into()))?;
