@@ -138,8 +138,8 @@ fn early_messages(recording: &Recording, cut: &TapeFilter<'_>) -> Result<Vec<u64
 }
 
 /// Merges several tapes into one at `to`, in order of arrival; for equal times in the order of the
-/// arguments. Metadata and attachments that are equal in several tapes are written once. Returns
-/// the number of messages.
+/// arguments. Messages, metadata and attachments that are equal in several tapes are written once,
+/// so that parts of a tape that overlap become the tape again. Returns the number of messages.
 ///
 /// # Errors
 /// A tape is damaged or not an MCAP file, or `to` cannot be written.
@@ -150,8 +150,11 @@ pub fn merge(recordings: &[Recording], to: impl AsRef<Path>) -> Result<u64, Erro
             .iter()
             .map(|one| MergeSource::new(one.contents()?))
             .collect::<Result<Vec<_>, Error>>()?;
-        while let Some(source) = next(&mut sources) {
-            if let Some(message) = source.advance()? {
+        let mut written = MergedMessages::default();
+        while let Some(number) = next(&sources) {
+            if let Some(message) = sources[number].advance()?
+                && written.admits(number, copy.channel(&message.channel)?, &message)
+            {
                 copy.message(&message)?;
             }
         }
@@ -200,8 +203,21 @@ impl<'a> MergeSource<'a> {
     }
 }
 
-/// The source with the earliest message; the first of several.
-fn next<'s, 'a>(sources: &'s mut [MergeSource<'a>]) -> Option<&'s mut MergeSource<'a>> {
-    let earliest = sources.iter().filter_map(|source| Some(source.next.as_ref()?.received)).min()?;
-    sources.iter_mut().find(|source| source.next.as_ref().is_some_and(|next| next.received == earliest))
+/// The number of the source with the earliest message; the first of several.
+fn next(sources: &[MergeSource<'_>]) -> Option<usize> {
+    let waiting = sources.iter().enumerate();
+    let waiting = waiting.filter_map(|(number, source)| Some((source.next.as_ref()?.received, number)));
+    waiting.min().map(|(_, number)| number)
+}
+
+/// The messages written, with the first source that has each. Their bytes are those of the sources.
+#[derive(Default)]
+struct MergedMessages<'a>(BTreeMap<(u16, u32, Timestamp, Timestamp, &'a [u8]), usize>);
+
+impl<'a> MergedMessages<'a> {
+    /// Notes a message; `false` if another source has had it.
+    fn admits(&mut self, source: usize, channel: u16, message: &RecordedSample<'a>) -> bool {
+        let RecordedSample { sequence, published, received, bytes, .. } = *message;
+        *self.0.entry((channel, sequence, received, published, bytes)).or_insert(source) == source
+    }
 }

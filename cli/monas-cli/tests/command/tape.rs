@@ -212,7 +212,16 @@ fn an_impossible_replay_has_a_reason() {
     done(&["tape", "cut", &tape(), "--from", "5s", "-o", &text(&part)]);
     let answer = monas(&["tape", "replay", &text(&part)]);
     assert_eq!(answer.code, Some(1));
-    assert!(answer.err.contains("the tape starts after its run"), "{}", answer.err);
+    assert!(answer.err.contains("part.mcap: the tape starts after its run"), "{}", answer.err);
+    let config = part.with_file_name("lights.xml");
+    let agents = "<agent frequency=\"5\"><name>Goalie</name><activity>LedHandler</activity></agent>";
+    fs::write(&config, agents).expect("the folder takes files");
+    for agents in [&[][..], &["--agents", "Goalie"]] {
+        let answer = monas(&[&["tape", "replay", &tape(), "--config", &text(&config)], agents].concat());
+        assert_eq!(answer.code, Some(2), "{answer:?}");
+        let expected = format!("the tape has no robot `local` of {}; it has blue-1, ", text(&config));
+        assert!(answer.err.contains(&expected), "{}", answer.err);
+    }
 }
 
 #[test]
@@ -341,7 +350,31 @@ fn messages_become_json_and_tables() {
 }
 
 #[test]
-fn a_match_cut_by_time_and_merged_again_is_the_match() {
+#[cfg(target_os = "linux")]
+fn an_export_to_a_full_disk_names_the_file() {
+    for format in ["csv", "jsonl"] {
+        let answer = monas(&["tape", "export", &tape(), "--format", format, "-o", "/dev/full"]);
+        assert_eq!(answer.code, Some(1), "{answer:?}");
+        let expected = "error: cannot write /dev/full: No space left on device";
+        assert!(answer.err.starts_with(expected), "{}", answer.err);
+    }
+}
+
+#[test]
+fn parts_of_a_match_that_overlap_are_merged_to_the_match() {
+    let (folder, first) = fresh("first.mcap");
+    let (rest, whole) = (folder.path().join("rest.mcap"), folder.path().join("whole.mcap"));
+    done(&["tape", "cut", &tape(), "--to", "5s", "-o", &text(&first)]);
+    done(&["tape", "cut", &tape(), "--from", "3s", "-o", &text(&rest)]);
+    done(&["tape", "merge", &text(&first), &text(&rest), "-o", &text(&whole)]);
+    let export = |path: &str| done(&["tape", "export", path]).out;
+    assert!(export(&text(&whole)) == export(&tape()));
+    let answer = done(&["tape", "verify", &text(&whole)]);
+    assert!(answer.out.contains(" 0 differences"), "{}", answer.out);
+}
+
+#[test]
+fn a_match_cut_by_hosts_and_merged_again_is_the_match() {
     let (folder, first) = fresh("first.mcap");
     let (rest, whole) = (folder.path().join("rest.mcap"), folder.path().join("whole.mcap"));
     let hosts = ["blue-1", "blue-2", "blue-3", "red-1", "red-2", "red-3", "field"];

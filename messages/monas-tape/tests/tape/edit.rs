@@ -156,6 +156,41 @@ fn tapes_are_merged_by_time_and_what_they_share_is_there_once() {
 }
 
 #[test]
+fn overlapping_parts_of_a_tape_merge_to_the_tape() {
+    let (_folder, path) = folder();
+    let whole = tape(&path("a.mcap"), &["one", "two"], 6);
+    let part = |from, to, name: &str| {
+        cut(&whole, &TapeFilter { from, to, ..TapeFilter::default() }, path(name)).unwrap();
+        Recording::open(path(name)).unwrap()
+    };
+    // The second one also begins with the states that held before it.
+    let parts = [part(None, Some(at(420)), "first.mcap"), part(Some(at(250)), None, "rest.mcap")];
+    assert_eq!(merge(&parts, path("b.mcap")).unwrap(), 36);
+    let sorted = |recording: &Recording| {
+        let mut lines = lines(recording);
+        lines.sort();
+        lines
+    };
+    assert_eq!(sorted(&Recording::open(path("b.mcap")).unwrap()), sorted(&whole));
+    // Another run with the same names has other messages.
+    let other = tape(&path("other.mcap"), &["one"], 7);
+    let later = TapeFilter { from: Some(at(700)), ..TapeFilter::default() };
+    cut(&other, &later, path("later.mcap")).unwrap();
+    let later = Recording::open(path("later.mcap")).unwrap();
+    assert_eq!(merge(&[whole, later], path("c.mcap")).unwrap(), 36 + 3);
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn a_full_disk_is_named_with_the_file() {
+    let (_folder, path) = folder();
+    let whole = tape(&path("a.mcap"), &["one"], 200);
+    let error = cut(&whole, &TapeFilter::default(), "/dev/full").unwrap_err();
+    let expected = "the tape /dev/full cannot be written: No space left on device";
+    assert!(error.to_string().starts_with(expected), "{error}");
+}
+
+#[test]
 fn a_failed_write_keeps_the_old_file() {
     let (_folder, path) = folder();
     tape(&path("a.mcap"), &["one"], 2);

@@ -67,7 +67,7 @@ pub(crate) enum TapeCommand {
         #[command(flatten)]
         format: FormatArgument,
     },
-    /// Merge several tapes into one, ordered by time.
+    /// Merge several tapes into one, ordered by time. What several of them contain is written once.
     #[command(after_help = "Example: monas tape merge one.mcap two.mcap -o both.mcap")]
     Merge {
         /// The tapes.
