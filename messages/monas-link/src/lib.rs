@@ -127,6 +127,6 @@ pub use protocol::{
 };
 pub use settings::{LinkSettings, PublishAs, ReceiveRule, SendRule};
 #[cfg(all(unix, feature = "local"))]
-pub use transport::{LocalTransport, default_folder};
+pub use transport::{LocalTransport, default_folder, runtime_folder};
 #[cfg(feature = "zenoh")]
 pub use transport::{Tls, Zenoh, ZenohSettings};

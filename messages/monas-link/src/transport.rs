@@ -8,4 +8,4 @@ mod zenoh;
 #[cfg(feature = "zenoh")]
 pub use self::zenoh::{Tls, Zenoh, ZenohSettings};
 #[cfg(all(unix, feature = "local"))]
-pub use local::{LocalTransport, default_folder};
+pub use local::{LocalTransport, default_folder, runtime_folder};

@@ -14,7 +14,8 @@ use std::path::Path;
 pub fn private_folder(path: &Path) -> io::Result<()> {
     use std::os::unix::fs::DirBuilderExt;
 
-    std::fs::DirBuilder::new().recursive(true).mode(0o700).create(path)?;
+    let failed = |error: io::Error| io::Error::new(error.kind(), format!("{}: {error}", path.display()));
+    std::fs::DirBuilder::new().recursive(true).mode(0o700).create(path).map_err(failed)?;
     check_private(path)
 }
 

@@ -43,17 +43,24 @@ pub struct LocalTransport {
     thread: Option<JoinHandle<()>>,
 }
 
-/// The folder of a user's sockets: `$XDG_RUNTIME_DIR/monas`; without that variable `monas-UID` in
-/// the system's folder for temporary files, which only this user can access.
+/// The folder of a user's sockets: `monas` in the [`runtime_folder`]; without one `monas-UID` in the
+/// system's folder for temporary files, which only this user can access.
 ///
 /// # Errors
 /// The folder for want of the variable cannot be created, or is that of another user or open to
 /// others.
 pub fn default_folder() -> Result<PathBuf, Error> {
-    match env::var_os("XDG_RUNTIME_DIR").filter(|folder| !folder.is_empty()) {
-        Some(folder) => Ok(Path::new(&folder).join("monas")),
+    match runtime_folder() {
+        Some(folder) => Ok(folder.join("monas")),
         None => private_folder(&env::temp_dir()),
     }
+}
+
+/// The folder that the system defines for the user's sockets, `XDG_RUNTIME_DIR`. By the
+/// specification of the variable a relative path is not valid: it would differ between the folders
+/// in which programs are started.
+pub fn runtime_folder() -> Option<PathBuf> {
+    env::var_os("XDG_RUNTIME_DIR").map(PathBuf::from).filter(|folder| folder.is_absolute())
 }
 
 /// The folder of this user in a folder that others can write.
@@ -61,13 +68,13 @@ fn private_folder(shared: &Path) -> Result<PathBuf, Error> {
     let path = shared.join(format!("monas-{}", rustix::process::geteuid().as_raw()));
     // A symbolic link is not followed: it may lead elsewhere at any time.
     let created = match fs::symlink_metadata(&path) {
-        Ok(found) if !found.is_dir() => Err(io::Error::other("it is no folder")),
+        Ok(found) if !found.is_dir() => Err(io::Error::other(format!("{} is no folder", path.display()))),
         _ => monas_files::private_folder(&path),
     };
     match created {
         Ok(()) => Ok(path),
         Err(error) => {
-            let text = format!("{}: {error}; remove it, or set XDG_RUNTIME_DIR", path.display());
+            let text = format!("{error}; remove it, or set XDG_RUNTIME_DIR");
             Err(Error::new(ErrorKind::Connection, text))
         }
     }

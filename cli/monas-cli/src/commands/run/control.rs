@@ -34,7 +34,7 @@ mod socket {
     use std::sync::Arc;
 
     use monas_link::control::{ControlServer, ControlTarget};
-    use monas_link::{Error, ErrorKind, default_folder};
+    use monas_link::{Error, ErrorKind, default_folder, runtime_folder};
     use narukom::{Hub, Timestamp};
 
     pub(crate) use monas_link::control::ControlSocket;
@@ -100,11 +100,11 @@ mod socket {
             (None, Ok(folder)) => {
                 let socket = by_default(&folder, arguments);
                 // Where tools look is known only if the system says so.
-                let is_said = std::env::var_os("XDG_RUNTIME_DIR").is_none_or(|folder| folder.is_empty());
+                let is_said = runtime_folder().is_none();
                 if let Some(socket) = socket.as_ref().filter(|_| is_said && format == Format::Text) {
                     writeln!(
                         console.remarks(),
-                        "control socket: {} (XDG_RUNTIME_DIR is not set)",
+                        "control socket: {} (XDG_RUNTIME_DIR is not set to an absolute path)",
                         socket.path().display()
                     )?;
                 }
