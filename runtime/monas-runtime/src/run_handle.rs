@@ -8,6 +8,7 @@ use std::time::Duration;
 use narukom::{Hub, Timestamp};
 
 use prost::Message;
+use yase::diagnostic::nearest;
 
 use super::clock::{RunClock, SimulatedClock};
 use super::host_status::{HostStatus, OUTSIDE};
@@ -242,12 +243,16 @@ impl RunHandle {
 
     /// The host of a query: the one that is named, or the only one with that agent.
     fn host_of(&self, host: Option<&str>, agent: &str) -> Result<String, String> {
-        let having = |view: &HostStatus| view.agents.iter().any(|known| known.name == agent);
-        let mut hosts: Vec<String> =
-            self.host_statuses(host)?.into_iter().filter(having).map(|view| view.host).collect();
+        let having = |view: &&HostStatus| view.agents.iter().any(|known| known.name == agent);
+        let statuses = self.host_statuses(host)?;
+        let mut hosts: Vec<String> = statuses.iter().filter(having).map(|view| view.host.clone()).collect();
         match (hosts.pop(), hosts.is_empty()) {
             (Some(only), true) => Ok(only),
-            (None, _) => Err(format!("no agent is named `{agent}`")),
+            (None, _) => {
+                let known = statuses.iter().flat_map(|view| &view.agents).map(|known| known.name.as_str());
+                let near = nearest(agent, known).map(|near| format!("; did you mean `{near}`?"));
+                Err(format!("no agent is named `{agent}`{}", near.unwrap_or_default()))
+            }
             (Some(last), false) => {
                 Err(format!("`{agent}` is on several hosts: name one of {}, {last}", hosts.join(", ")))
             }
