@@ -60,7 +60,9 @@ pub(crate) const TAKEN: [&str; 11] = [
 /// # Errors
 /// The name cannot be used, the folder is not empty, or a file cannot be written.
 pub fn create_project(folder: &Path, monas: Option<&str>) -> Result<Vec<PathBuf>, Error> {
-    let name = folder.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+    // The name of `.` is that of the present folder.
+    let absolute = std::path::absolute(folder).unwrap_or_else(|_| folder.to_path_buf());
+    let name = absolute.file_name().unwrap_or(folder.as_os_str()).to_string_lossy().into_owned();
     check(&name).map_err(|message| Error::new(ErrorKind::Argument, message))?;
     if fs::read_dir(folder).is_ok_and(|mut entries| entries.next().is_some()) || folder.is_file() {
         let message = format!("{} exists and is not empty", folder.display());

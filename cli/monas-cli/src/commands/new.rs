@@ -42,6 +42,9 @@ pub(crate) fn execute(
         [_] if arguments.module => Err(CommandFailure::Usage(
             "--module is for an activity: `monas new activity NAME --module`".into(),
         )),
+        [kind] if kind == "activity" => {
+            Err(CommandFailure::Usage("the activity has no name: `monas new activity NAME`".into()))
+        }
         [name] => project(name, arguments, console),
         [kind, name] if kind == "activity" && arguments.module => module(name, arguments, console),
         [kind, name] if kind == "activity" => activity(name, arguments, console),

@@ -43,6 +43,21 @@ fn a_project_has_its_folders_and_manifests_that_cargo_reads() {
     assert_eq!(names, ["activities", "functionalities", "messages", "my-team"]);
 }
 
+#[test]
+fn the_present_folder_becomes_a_project_of_its_name() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let team = folder.path().join("my-team");
+    fs::create_dir(&team).expect("the folder takes folders");
+    let answer = monas_in(&team, &["new", "."]);
+    assert_eq!(answer.code, Some(0), "{}", answer.err);
+    assert!(read(&team.join("Cargo.toml")).contains("program = \"my-team\""));
+    // A forgotten name makes no project.
+    let answer = monas_in(folder.path(), &["new", "activity"]);
+    assert_eq!(answer.code, Some(2), "{}", answer.err);
+    assert!(answer.err.contains("the activity has no name: `monas new activity NAME`"), "{}", answer.err);
+    assert!(!folder.path().join("activity").exists());
+}
+
 fn cargo_in(cargo: &mut Command, folder: &Path) -> String {
     let output = cargo.current_dir(folder).output().expect("cargo starts");
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
