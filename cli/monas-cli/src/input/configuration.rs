@@ -93,7 +93,14 @@ pub(crate) fn load_agents(
     let is_empty = setup.agents.is_empty() && setup.links.is_empty() && setup.modules.is_empty();
     if is_empty && !diagnostics.iter().any(Diagnostic::is_error) {
         let name = config::shown_name(config);
-        let hint = "add an agent, as in `<agent><name>Greeter</name><statechart>models/greeter.srm</statechart></agent>`";
+        let hint = match config.extension().is_some_and(|extension| extension == "toml") {
+            true => {
+                "add an agent: `[[agent]]`, and below it `name = \"Greeter\"` and `statechart = [\"models/greeter.srm\"]`"
+            }
+            false => {
+                "add an agent, as in `<agent><name>Greeter</name><statechart>models/greeter.srm</statechart></agent>`"
+            }
+        };
         let found = Diagnostic::error("E0326", 0..0, format!("`{name}` has no agent that is enabled"));
         diagnostics.push(found.with_hint(hint).in_source(&Source::new(name, "")));
     }

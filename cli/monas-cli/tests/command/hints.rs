@@ -90,6 +90,9 @@ fn a_configuration_without_agents_is_not_run() {
         assert_eq!((answer.code, answer.out.as_str()), (Some(3), ""), "{}", answer.err);
         assert!(answer.err.contains("has no agent that is enabled"), "{}", answer.err);
     }
+    let toml = file(folder.path(), "agents.toml", "");
+    let answer = monas(&["config", "check", &toml]);
+    assert!(answer.err.contains("add an agent: `[[agent]]`"), "{}", answer.err);
     #[cfg(unix)]
     assert_eq!(monas(&["run", "/dev/null"]).code, Some(3));
 }
