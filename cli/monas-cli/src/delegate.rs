@@ -6,7 +6,7 @@ use std::ffi::OsString;
 use std::path::Path;
 use std::process::Command;
 
-use monas_project::project_program;
+use monas_project::{Project, project_program};
 
 /// Commands that need no activities and are executed directly.
 const OWN: [&str; 9] = ["new", "completions", "explain", "man", "help", "--help", "-h", "--version", "-V"];
@@ -48,7 +48,20 @@ pub(crate) fn delegate() {
     let arguments: Vec<OsString> = env::args_os().skip(1).collect();
     let (Ok(here), Ok(program)) = (env::current_dir(), env::current_exe()) else { return };
     if let Some(command) = project_command(&arguments, &here, &program) {
+        if command_word(&arguments).is_some_and(|word| word == "generate") {
+            link_again(&here);
+        }
         exec_program(command);
+    }
+}
+
+/// Takes generated crates that were deleted out of the project's files: Cargo would not build the
+/// program that does it.
+fn link_again(here: &Path) {
+    let Some((folder, _)) = project_program(here) else { return };
+    let linked = Project::around(&folder.join("Cargo.toml")).and_then(|project| project.link());
+    if let Err(error) = linked {
+        tracing::warn!("the generated crates of this project cannot be linked: {error}");
     }
 }
 

@@ -16,6 +16,7 @@ use monas::{Registry, config, generated};
 use yase::{Diagnostic, Statechart};
 
 use crate::error::{Error, ErrorKind};
+use crate::new_project::TAKEN;
 use crate::project::Project;
 
 /// A generated crate.
@@ -40,7 +41,7 @@ pub fn generate_crate(
     project: &Project,
 ) -> Result<GeneratedCrate, Error> {
     let folder = crate_folder(model, folder, project)?;
-    let name = crate_name(&folder)?;
+    let name = crate_name(&folder, project)?;
     let mut words = generated::words(&Registry::linked())
         .map_err(|error| Error::new(ErrorKind::Program, error.to_string()))?;
     words.origin = project.relative(model);
@@ -89,22 +90,27 @@ fn crate_folder(model: &Path, folder: Option<&Path>, project: &Project) -> Resul
     }
 }
 
-/// The name of the crate is that of its folder.
-fn crate_name(folder: &Path) -> Result<String, Error> {
+/// The name of the crate is that of its folder. A second crate of a name that the project uses would
+/// keep Cargo from building it.
+fn crate_name(folder: &Path, project: &Project) -> Result<String, Error> {
     let name = folder.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     let is_plain = name.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_')
         && name.starts_with(|first: char| first.is_ascii_lowercase())
         && generate::identifier(&[&name]) == name;
-    match is_plain {
-        true => Ok(name),
-        false => {
-            let message = format!("`{name}` cannot be the name of a crate");
-            let hint =
-                "name the folder with lower-case letters, digits and underscores: --to statecharts/NAME";
-            let found = Diagnostic::error("E0925", 0..0, message).with_hint(hint);
-            Err(Error::invalid(vec![found]))
-        }
+    let refused = |message, hint: &str| {
+        let found = Diagnostic::error("E0925", 0..0, message).with_hint(hint);
+        Err(Error::invalid(vec![found]))
+    };
+    if !is_plain {
+        let hint = "name the folder with lower-case letters, digits and underscores: --to statecharts/NAME";
+        return refused(format!("`{name}` cannot be the name of a crate"), hint);
     }
+    let is_same = |other: &str| other.replace('-', "_") == name;
+    if TAKEN.into_iter().any(is_same) || project.team_package().is_some_and(|package| is_same(&package)) {
+        let message = format!("`{name}` is the name of another crate");
+        return refused(message, &format!("name the folder otherwise: --to statecharts/{name}_chart"));
+    }
+    Ok(name)
 }
 
 /// Removes activities of the crate itself: those are its skeletons.
@@ -229,4 +235,23 @@ fn formatted(files: CrateFiles, project: &Project) -> std::io::Result<(CrateFile
     let is_formatted = output.is_ok_and(|output| output.status.success());
     let read = |path: String| fs::read_to_string(folder.path().join(&path)).map(|text| (path, text));
     Ok((files.into_keys().map(read).collect::<Result<_, _>>()?, is_formatted))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_chart_does_not_have_the_name_of_another_crate() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let manifest = folder.path().join("Cargo.toml");
+        fs::write(&manifest, "[workspace]\n\n[package]\nname = \"my-team\"\n").expect("a file");
+        let project = Project::around(&manifest).expect("a project");
+        let name = |name: &str| crate_name(&project.statecharts().join(name), &project);
+        assert_eq!(name("goalie").expect("it is free"), "goalie");
+        for taken in ["activities", "core", "monas_cli", "my_team"] {
+            let refused = name(taken).expect_err("it is taken").to_string();
+            assert!(refused.contains(&format!("`{taken}` is the name of another crate")), "{refused}");
+        }
+    }
 }

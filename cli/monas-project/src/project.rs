@@ -158,11 +158,17 @@ impl Project {
         model.is_file().then_some(model)
     }
 
-    /// Links all generated crates into the team's program. Returns the changed files.
+    /// The name of the team's package.
+    pub(crate) fn team_package(&self) -> Option<String> {
+        let manifest = fs::read_to_string(self.team.join("Cargo.toml")).ok()?;
+        value(table(&manifest, "[package]")?, "name").map(str::to_owned)
+    }
+
+    /// Links all generated crates into the team's program, and no others. Returns the changed files.
     ///
     /// # Errors
     /// A file cannot be read or written.
-    pub(crate) fn link(&self) -> Result<Vec<PathBuf>, Error> {
+    pub fn link(&self) -> Result<Vec<PathBuf>, Error> {
         let crates = self.generated()?;
         let is_shared = table(&self.manifest, "[workspace.dependencies]").is_some();
         let way_up = self.team.strip_prefix(&self.root).map_or(0, |path| path.components().count());
@@ -263,6 +269,33 @@ fn refusal(message: String, hint: &str) -> Error {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_crate_that_is_gone_is_linked_no_more() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let write = |file: &str, text: &str| {
+            let path = folder.path().join(file);
+            fs::create_dir_all(path.parent().expect("it has a folder")).expect("folders");
+            fs::write(path, text).expect("the folder takes files");
+        };
+        let manifest = "[workspace]\nmembers = [\"statecharts/*\"]\n\n[workspace.dependencies]\n\n\
+                        [package]\nname = \"my-team\"\n\n[dependencies]\n";
+        write("Cargo.toml", manifest);
+        write("src/main.rs", "fn main() {}\n");
+        for name in ["goalie", "scout"] {
+            write(&format!("statecharts/{name}/Cargo.toml"), "[package]\n");
+        }
+        let project = || Project::around(&folder.path().join("Cargo.toml")).expect("a project");
+        assert_eq!(project().team_package().as_deref(), Some("my-team"));
+        project().link().expect("it is linked");
+        let read = |file: &str| fs::read_to_string(folder.path().join(file)).expect("a file");
+        assert_eq!(read("Cargo.toml").matches("scout").count(), 3);
+        fs::remove_dir_all(folder.path().join("statecharts/scout")).expect("it is there");
+        project().link().expect("it is linked");
+        assert!(!read("Cargo.toml").contains("scout") && !read(LINKS).contains("scout"));
+        assert!(read("Cargo.toml").contains("goalie") && read(LINKS).contains("goalie"));
+        assert_eq!(project().link().expect("it is linked"), [PathBuf::new(); 0]);
+    }
 
     #[test]
     fn the_module_of_links_follows_the_project_settings() {
