@@ -110,7 +110,8 @@ impl LinkReader<'_> {
                 draft.endpoints.certificates = self.certificates(child);
             }
         }
-        if draft.settings.send.is_empty() && draft.settings.receive.is_empty() {
+        // Topics that are wrong are reported themselves.
+        if !element.children().iter().any(|child| child.is("send") || child.is("receive")) {
             let message = "the link neither sends nor receives anything";
             let hint = "add topics: `<send topics=\"soccer/*\"/>`, `<receive topics=\"soccer/ball\"/>`";
             self.diagnostics.push(element.error("E0330", element.name_span(), message).with_hint(hint));

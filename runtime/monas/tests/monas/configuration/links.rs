@@ -101,6 +101,11 @@ fn link_errors_have_positions_and_hints() {
     );
     check_link(
         "",
+        "<receive topics='test/bal'/>",
+        &["agents.xml:2:18: error[E0331]: the topic `test/bal` is not declared; did you mean `test/ball`?"],
+    );
+    check_link(
+        "",
         "<send topics='test/bal'/><send topics='test/*'/>",
         &["agents.xml:2:15: error[E0331]: the topic `test/bal` is not declared; did you mean `test/ball`?"],
     );
