@@ -90,8 +90,8 @@ fn crate_folder(model: &Path, folder: Option<&Path>, project: &Project) -> Resul
     }
 }
 
-/// The name of the crate is that of its folder. A second crate of a name that the project uses would
-/// keep Cargo from building it.
+/// The name of the crate is that of its folder. A second crate of a name that the project uses
+/// would keep Cargo from building it.
 fn crate_name(folder: &Path, project: &Project) -> Result<String, Error> {
     let name = folder.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     let is_plain = name.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_')

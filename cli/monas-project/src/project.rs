@@ -164,7 +164,8 @@ impl Project {
         value(table(&manifest, "[package]")?, "name").map(str::to_owned)
     }
 
-    /// Links all generated crates into the team's program, and no others. Returns the changed files.
+    /// Links all generated crates into the team's program, and no others. Returns the changed
+    /// files.
     ///
     /// # Errors
     /// A file cannot be read or written.
@@ -294,7 +295,7 @@ mod tests {
         project().link().expect("it is linked");
         assert!(!read("Cargo.toml").contains("scout") && !read(LINKS).contains("scout"));
         assert!(read("Cargo.toml").contains("goalie") && read(LINKS).contains("goalie"));
-        assert_eq!(project().link().expect("it is linked"), [PathBuf::new(); 0]);
+        assert!(project().link().expect("it is linked").is_empty());
     }
 
     #[test]

@@ -43,8 +43,8 @@ pub struct LocalTransport {
     thread: Option<JoinHandle<()>>,
 }
 
-/// The folder of a user's sockets: `monas` in the [`runtime_folder`]; without one `monas-UID` in the
-/// system's folder for temporary files, which only this user can access.
+/// The folder of a user's sockets: `monas` in the [`runtime_folder`]; without one `monas-UID` in
+/// the system's folder for temporary files, which only this user can access.
 ///
 /// # Errors
 /// The folder for want of the variable cannot be created, or is that of another user or open to
