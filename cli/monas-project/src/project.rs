@@ -198,6 +198,8 @@ impl Project {
         if let Some(main) = main.iter().find(|file| file.is_file()) {
             changed.extend(edited(main, with_module)?);
         }
+        // The team's package may be that of the root: both edits are of one file.
+        changed.dedup();
         Ok(changed)
     }
 
@@ -288,7 +290,8 @@ mod tests {
         }
         let project = || Project::around(&folder.path().join("Cargo.toml")).expect("a project");
         assert_eq!(project().team_package().as_deref(), Some("my-team"));
-        project().link().expect("it is linked");
+        let changed = project().link().expect("it is linked");
+        assert_eq!(changed.iter().filter(|path| path.ends_with("Cargo.toml")).count(), 1, "{changed:?}");
         let read = |file: &str| fs::read_to_string(folder.path().join(file)).expect("a file");
         assert_eq!(read("Cargo.toml").matches("scout").count(), 3);
         fs::remove_dir_all(folder.path().join("statecharts/scout")).expect("it is there");

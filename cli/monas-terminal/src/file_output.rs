@@ -1,4 +1,4 @@
-//! The flag `-o`: writes a text to a file or to standard output.
+//! The flag `-o`: writes a text or a drawing to a file or to standard output.
 
 use std::path::Path;
 
@@ -18,4 +18,19 @@ pub fn write_text(
         None => console.out.write_all(text.as_bytes())?,
     }
     Ok(Exit::Success)
+}
+
+/// Writes a drawing as [`write_text`] does. A name that promises another format is refused.
+pub fn write_drawing(
+    output: Option<&Path>,
+    svg: &str,
+    format: Format,
+    console: &mut CommandOutput<'_>,
+) -> Result<Exit, CommandFailure> {
+    let is_other = |path: &&Path| path.extension().is_some_and(|ending| !ending.eq_ignore_ascii_case("svg"));
+    if let Some(path) = output.filter(is_other) {
+        let message = format!("`{}`: drawings are SVG, the file must end in .svg", path.display());
+        return Err(CommandFailure::Usage(message));
+    }
+    write_text(output, svg, format, console)
 }

@@ -204,7 +204,7 @@ fn begin(text: &str, line: Span, equals: usize, diagnostics: &mut Vec<Diagnostic
     if !text::is_name(&text[name.start..name.end]) {
         let place = if name.start == name.end { Span::new(equals, equals + 1) } else { name };
         let message = format!("`{}` is not a name to the left of `=`", &text[name.start..name.end]);
-        let hint = "a name has letters, digits and underscores";
+        let hint = "a name has ASCII letters, digits and underscores";
         diagnostics.push(Diagnostic::error("E0202", place, message).with_hint(hint));
     }
     let mut body = Span::new(equals + 1, line.end);

@@ -124,9 +124,10 @@ fn mistakes_are_answered_with_what_would_be_right() {
     fs::write(&snippet, "<agent frequency=\"10\">\n<name>x</name><activity>LedHandlr</activity></agent>")
         .expect("a file");
     let ask = |arguments: &[&str]| ask(folder.path(), &[&["agent"], arguments].concat());
-    let cases: [(&[&str], i32, &str); 9] = [
+    let cases: [(&[&str], i32, &str); 10] = [
         (&["stop", "Light"], 1, "no agent of `local` is named `Light`\n  help: did you mean `Lights`?"),
         (&["start", "Lights"], 1, "`Lights` has not stopped"),
+        (&["set", "Lights", "frequency=1", "frequency=2"], 2, "`frequency` is given twice"),
         (&["set", "Lights", "frequency=fast"], 1, "`frequency` is `fast`, expected a number from"),
         (&["set", "Lights", "frequency"], 2, "`frequency` is not KEY=VALUE"),
         (

@@ -72,6 +72,10 @@ fn draw_writes_a_drawing() {
         written.contains("<svg") && written.contains("TrackBall") && written.trim_end().ends_with("</svg>")
     );
     assert_eq!(monas(&["model", "draw", ROLES[1]]).out, written);
+    let image = folder.path().join("attacker.png");
+    let answer = monas(&["model", "draw", ROLES[1], "-o", &image.display().to_string()]);
+    assert!(answer.code == Some(2) && answer.err.contains("the file must end in .svg"), "{answer:?}");
+    assert!(!image.exists());
 }
 
 #[test]

@@ -181,7 +181,9 @@ impl<'a> RoleText<'a> {
         }
         if !text::is_name(name) || ["START", "END", "CONDITION"].contains(&name) {
             let message = format!("`{name}` is no name of a state");
-            return Err(EditRefusal::new(message).with_hint("a name has letters, digits and underscores"));
+            return Err(
+                EditRefusal::new(message).with_hint("a name has ASCII letters, digits and underscores")
+            );
         }
         let formulas = self.entries(Section::Liveness);
         if formulas.iter().any(|entry| !words(&self.blanked, entry.span, name).is_empty()) {

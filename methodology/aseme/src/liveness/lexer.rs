@@ -93,6 +93,6 @@ fn report(text: &str, span: Span, diagnostics: &mut Vec<Diagnostic>) {
         None => span,
     };
     let message = format!("`{}` has no meaning in a formula", &text[span.start..span.end]);
-    let hint = "names have letters, digits and underscores; operators are . | || * + ~ ω [ ] ( )";
+    let hint = "names have ASCII letters, digits and underscores; operators are . | || * + ~ ω [ ] ( )";
     diagnostics.push(Diagnostic::error("E0204", span, message).with_hint(hint));
 }

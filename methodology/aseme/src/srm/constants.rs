@@ -34,7 +34,8 @@ impl Reader {
         };
         if !text::is_name(name) || name.starts_with(|c: char| c.is_ascii_digit()) {
             let message = format!("`{name}` is not a name for a constant");
-            let hint = "a name starts with a letter, followed by letters, digits and underscores";
+            let hint =
+                "a name starts with an ASCII letter, followed by ASCII letters, digits and underscores";
             return self.report(Diagnostic::error("E0237", span, message).with_hint(hint));
         }
         if self.srm.constants.iter().any(|constant| constant.name == name) {

@@ -92,11 +92,18 @@ fn agent_or_chart(action: Action, AgentOrChart { one, chart }: &AgentOrChart) ->
 
 /// Parses `KEY=VALUE` arguments.
 fn settings(given: &[String]) -> Result<Vec<Setting>, CommandFailure> {
-    let setting = |text: &String| match text.split_once('=') {
-        Some((key, value)) if !key.is_empty() => Ok(Setting { key: key.into(), value: value.into() }),
-        _ => Err(CommandFailure::Usage(format!("`{text}` is not KEY=VALUE"))),
-    };
-    given.iter().map(setting).collect()
+    let mut settings: Vec<Setting> = Vec::new();
+    for text in given {
+        let (key, value) = text
+            .split_once('=')
+            .filter(|(key, _)| !key.is_empty())
+            .ok_or_else(|| CommandFailure::Usage(format!("`{text}` is not KEY=VALUE")))?;
+        if settings.iter().any(|setting| setting.key == key) {
+            return Err(CommandFailure::Usage(format!("`{key}` is given twice: remove one of them")));
+        }
+        settings.push(Setting { key: key.into(), value: value.into() });
+    }
+    Ok(settings)
 }
 
 /// The text of a file, or of standard input for `-`, and the file's name.

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use monas::records::{ChartChoice, ChartState, Inquiry};
-use monas_terminal::{CommandFailure, CommandOutput, Exit, Format};
+use monas_terminal::{CommandFailure, CommandOutput, Exit, Format, write_drawing};
 use serde_json::{Value, json};
 use yase::StateNames;
 use yase::snapshot::{ActivityPhase, EventName, OccurrenceRecord, Snapshot};
@@ -20,9 +20,8 @@ pub(crate) fn execute(
     let choice = ChartChoice { agent: agent.into(), chart: chart.unwrap_or_default().into(), values: false };
     let state = request(Inquiry { chart: Some(choice), ..Inquiry::default() }, run)?.chart;
     let state = state.ok_or_else(|| unexpected_reply(run))?;
-    if let Some(file) = output {
-        let failed = |error| CommandFailure::failed(run.format.value, format!("{}: {error}", file.display()));
-        monas_files::write(file, &state.drawing).map_err(failed)?;
+    if output.is_some() {
+        write_drawing(output, &state.drawing, run.format.value, console)?;
     }
     match run.format.value {
         Format::Json => {

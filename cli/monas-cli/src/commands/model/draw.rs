@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueHint};
 use monas::config;
-use monas_terminal::{CommandFailure, CommandOutput, Exit, FormatArgument, report, write_text};
+use monas_terminal::{CommandFailure, CommandOutput, Exit, FormatArgument, report, write_drawing};
 use yase::statechart::Layout;
 
 /// Arguments of `monas model draw`.
@@ -48,5 +48,5 @@ pub(crate) fn execute(
     if arguments.compact {
         chart = yase_export::compact(&chart);
     }
-    write_text(arguments.output.as_deref(), &yase_export::to_svg(&chart), format, console)
+    write_drawing(arguments.output.as_deref(), &yase_export::to_svg(&chart), format, console)
 }

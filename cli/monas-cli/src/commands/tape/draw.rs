@@ -7,7 +7,7 @@ use clap::{Args, ValueHint};
 use monas::duration;
 use monas_match::RecordedField;
 use monas_tape::Recording;
-use monas_terminal::{CommandFailure, CommandOutput, Exit, FormatArgument, failed, write_text};
+use monas_terminal::{CommandFailure, CommandOutput, Exit, FormatArgument, failed, write_drawing};
 
 use crate::input::{ConfigurationKind, LayerArguments, kind_of, layers, recorded_configuration};
 
@@ -61,7 +61,7 @@ pub(crate) fn execute(
     let layers = layers::of(&path, &LayerArguments { settings, robot: None }).map_err(invalid)?;
     let field = RecordedField::load(&path, &layers).map_err(invalid)?;
     let picture = field.draw(&recording, &times).map_err(failed(format))?;
-    write_text(arguments.output.as_deref(), &picture, format, console)
+    write_drawing(arguments.output.as_deref(), &picture, format, console)
 }
 
 /// The times of the pictures.
