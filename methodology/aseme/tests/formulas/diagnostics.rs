@@ -132,7 +132,7 @@ fn constants_are_values_with_names() {
         check(&format!("Liveness:\nr = a\nConstants:\n{line}\n"), code, place, says)
     };
     check("near", "E0237", "near", "name = value");
-    check("2near = 1", "E0237", "2near = 1", "starts with a letter");
+    check("2near = 1", "E0237", "2near = 1", "starts with an ASCII letter");
     check("a = 1\na = 2", "E0238", "a = 2", "already");
     check("a = one", "E0239", "a = one", "a number, which a unit may follow");
 }
