@@ -437,6 +437,12 @@ mod tests {
         let red = "name='B' number='2' colour='red' side='right'";
         let third = "\n<team name='C' number='3' colour='red' side='right'/>";
         assert_eq!(found(red, third), "match.xml:3:2: error[E0406]: a match needs two teams, not 3");
+        let robot = |number| format!("<robot number='{number}' role='match.xml'/>");
+        let [first, second] = [[1, 2], [3, 3]].map(|numbers| numbers.map(robot).concat());
+        let found = diagnostics_of(&format!(
+            "<match><team number='1' name='A' colour='blue' side='left'>{first}</team>\n<team {red}>\n{second}</team></match>",
+        ));
+        assert_eq!(found, ["match.xml:3:52: error[E0406]: team 2 has two robots 3"]);
     }
 
     #[test]
