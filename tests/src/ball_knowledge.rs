@@ -1,4 +1,4 @@
-//! What robots know of the ball in a match, compared with the truth.
+//! The robots' belief about the ball in a match, compared with the truth.
 
 use std::time::Duration;
 

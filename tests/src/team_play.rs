@@ -149,7 +149,7 @@ impl TeamPlayObserver {
         }))
     }
 
-    /// What was observed of a match so far.
+    /// The observations of a match so far.
     pub fn team_play(&self, running: &RunningMatch) -> TeamPlay {
         let seen = self.seen.lock().unwrap_or_else(PoisonError::into_inner);
         let mut play = running.pitch().with_world(|world| {

@@ -29,7 +29,7 @@ const CHANGES: &str = "soccer/monas-eval/changes";
 /// The golden table of the edits that the change requests need.
 const CHANGE_TABLE: &str = "soccer/monas-eval/changes/edits.txt";
 
-/// What to do with the result.
+/// The use of the result.
 pub(crate) enum Task<'a> {
     /// Write the golden table.
     Write,
@@ -39,7 +39,7 @@ pub(crate) enum Task<'a> {
     Print(&'a str),
 }
 
-/// What finds a fault in each way; none where it cannot be made.
+/// The first check that finds a fault, by methodology; none where the fault cannot be made.
 type Row<'a> = (&'a BehaviourPatch, BTreeMap<Methodology, Option<Finder>>);
 
 /// Injects the faults, one at a time.

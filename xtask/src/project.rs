@@ -40,8 +40,8 @@ const DROPPED: [(&str, &str); 5] = [
     ),
 ];
 
-/// What roles with every kind of expression need, and the roles: these are generated and built, but
-/// not checked. `Announce` and `Watch` are written nowhere.
+/// Roles with every kind of expression and the file that they need: these are generated and built,
+/// but not checked. `Announce` and `Watch` are written nowhere.
 const EXPRESSIONS: [(&str, &str); 4] = [
     (
         "messages/act.proto",
@@ -103,7 +103,7 @@ const TAKEN: [(&str, &str, &str, &[&str]); 2] = [
 const FAILING: (&str, &str, &str, &[&str]) =
     ("activities/greet.rs", "number, number)", "number, number + 1)", &["test failed", "-p activities"]);
 
-/// What a project without matches does not need.
+/// Files that a project without matches does not need.
 const LEFT_OUT: [&str; 6] =
     ["monas-eval", "monas-match", "monas-sim", "monas-soccer", "nalgebra", "rapier2d"];
 

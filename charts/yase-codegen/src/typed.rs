@@ -102,13 +102,13 @@ macro_rules! any {
     };
 }
 
-/// What [`all!`](crate::all!) expands to.
+/// The expansion of [`all!`](crate::all!).
 #[doc(hidden)]
 pub fn all_of(parts: &[&dyn Fn() -> GuardResult]) -> GuardResult {
     decide(parts, true)
 }
 
-/// What [`any!`](crate::any!) expands to.
+/// The expansion of [`any!`](crate::any!).
 #[doc(hidden)]
 pub fn any_of(parts: &[&dyn Fn() -> GuardResult]) -> GuardResult {
     decide(parts, false)

@@ -33,12 +33,12 @@ struct Decisions<'s, 'a> {
     log: Vec<Decision>,
     /// The known values of conditions on each blackboard in this step.
     known: Vec<(ScopeId, ScriptId, bool)>,
-    /// What is so on each blackboard: values of conditions, and actions, which are true. Unlike a
-    /// known value, it is not lost when an action writes something else.
+    /// The facts on each blackboard: values of conditions, and executed actions, which are true.
+    /// Unlike a known value, a fact is not lost when an action writes something else.
     facts: Vec<(ScopeId, ScriptId, bool)>,
     /// The actions of this step that have written to a blackboard.
     written: Vec<(ScopeId, ScriptId)>,
-    /// What is so on one blackboard.
+    /// The facts on one blackboard.
     on_board: Vec<(ScriptId, bool)>,
     /// The blackboards on which no condition holds, by index.
     idle: &'s [bool],

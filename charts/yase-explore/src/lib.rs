@@ -75,7 +75,7 @@ pub use trace::{ParseError, StepCause, Trace, TraceStep, replay};
 /// actions whose effects stand.
 pub type ConditionConstraint<'a> = dyn FnMut(ScriptId, bool, &[(ScriptId, bool)]) -> bool + 'a;
 
-/// What the actions in the host's language do to the data that conditions read.
+/// The effects of actions in the host's language on the data that conditions read.
 ///
 /// An action that was executed is a fact like a condition that holds: until another one changes it,
 /// it stands among the conditions that are known, as true.
@@ -104,7 +104,7 @@ pub struct Environment<'a> {
     /// Whether a condition may have a value, given others; called once per combination. The default
     /// allows all values.
     pub allows: Box<ConditionConstraint<'a>>,
-    /// What actions write.
+    /// The writes of actions.
     pub effects: WriteEffects<'a>,
 }
 

@@ -66,7 +66,7 @@ struct XStateWriter<'a> {
     writer: JsonWriter,
 }
 
-/// What enables a transition path, in XState's terms.
+/// The trigger of a transition path, in XState's terms.
 enum XStateTrigger {
     /// These events.
     On(Vec<String>),

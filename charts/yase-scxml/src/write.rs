@@ -193,7 +193,7 @@ impl<'a> DocumentWriter<'a> {
             kind => {
                 let path = self.names.name(id);
                 self.refuse(format!("`{path}` is a {kind:?}, which SCXML cannot represent"));
-                // What its transitions lose is listed too; the document is refused already.
+                // The losses of its transitions are listed too; the document is refused already.
                 for transition in self.out_of(id) {
                     self.transition(transition);
                 }

@@ -263,7 +263,7 @@ pub(crate) struct CompoundTransition {
     /// The composite that remains without an active child.
     pub(crate) vacates: Option<NodeIndex>,
     pub(crate) arrival: Option<Arrival>,
-    /// What it does segment by segment, if the semantics demands it.
+    /// Its effects segment by segment, if the semantics demands it.
     pub(crate) steps: Box<[SegmentStep]>,
     pub(crate) leaves: Box<[TransitionTarget]>,
     pub(crate) entries: EntryPlan,
@@ -325,7 +325,7 @@ pub(crate) struct Arrival {
     pub(crate) passes: bool,
 }
 
-/// What one segment does.
+/// The effects of one segment.
 #[derive(Clone, Debug)]
 pub(crate) struct SegmentStep {
     /// The index range of the nodes it leaves, if active.
@@ -342,7 +342,7 @@ pub(crate) struct SegmentStep {
     pub(crate) end: Option<TransitionTarget>,
 }
 
-/// Where a compound transition ends or continues.
+/// The end or the continuation of a compound transition.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum TransitionTarget {
     /// At a state or a HISTORY.

@@ -60,7 +60,7 @@ pub struct Semantics {
     pub join: JoinMode,
     /// When an exit point that several regions reach is passed.
     pub exit_points: ExitPointArrival,
-    /// What a transition to TERMINATE leaves before the chart stops.
+    /// The states that a transition to TERMINATE leaves before the chart stops.
     pub terminate: TerminateExit,
     /// When other blackboards show what an action writes.
     pub sharing: WriteVisibility,
@@ -306,14 +306,14 @@ pub enum ExitPointArrival {
     All,
 }
 
-/// What a transition to TERMINATE leaves before the chart stops.
+/// The states that a transition to TERMINATE leaves before the chart stops.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum TerminateExit {
     /// Nothing.
     Nothing,
-    /// What a transition to a state in the place of TERMINATE would leave.
+    /// The states that a transition to a state in the place of TERMINATE would leave.
     Source,
 }
 

@@ -35,7 +35,7 @@ pub mod messages {
 use messages::{Drive, Orders, Vehicle};
 
 topic! {
-    /// What the vehicle measures.
+    /// The measurements of the vehicle.
     pub VEHICLE: State<Vehicle> = "warehouse/vehicle";
     /// Commands to the vehicle.
     pub DRIVE: State<Drive> = "warehouse/drive";

@@ -41,7 +41,8 @@ pub trait ControlTarget: Send + Sync {
     /// Whether its time is simulated.
     fn is_simulated(&self) -> bool;
 
-    /// What endangers the run's results at present, for people: a recording that cannot be written.
+    /// Conditions that endanger the run's results at present, for people: a recording cannot be
+    /// written.
     fn alarms(&self) -> Vec<String> {
         Vec::new()
     }

@@ -8,7 +8,7 @@ use narukom::{Hub, TopicDeclaration};
 use crate::error::{Error, ErrorKind};
 use crate::protocol::{AccessList, LinkTopic, NodeSettings, Reliability, Schema, SendBudget};
 
-/// What a link sends and receives.
+/// The topics that a link sends and receives, and how.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub struct LinkSettings {
     /// The name of this end; if it is empty, that of the hub's host.

@@ -103,7 +103,7 @@ impl Recording {
         self.bytes.len() > MAGIC.len() && self.bytes.ends_with(MAGIC)
     }
 
-    /// Where the bytes of one of its messages are, to find them again with
+    /// The position of a message's bytes, to find them again with
     /// [`bytes_at`](Recording::bytes_at).
     pub fn range_of(&self, message: &RecordedSample<'_>) -> Range<usize> {
         let begin = (message.bytes.as_ptr() as usize).saturating_sub(self.bytes.as_ptr() as usize);

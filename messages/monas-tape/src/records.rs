@@ -51,7 +51,7 @@ pub(crate) struct AttachmentRecord<'a> {
     pub(crate) name: &'a str,
     pub(crate) media_type: &'a str,
     pub(crate) data: &'a [u8],
-    /// What the checksum covers: all fields before it.
+    /// The bytes that the checksum covers: all fields before it.
     pub(crate) checked: &'a [u8],
     /// CRC-32; 0 if there is none.
     pub(crate) crc: u32,

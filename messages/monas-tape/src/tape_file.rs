@@ -9,7 +9,7 @@ use monas_files::{ExclusiveFile, ExistingFile};
 use crate::error::Error;
 use crate::recording_folder::RecordingFolder;
 
-/// What a recorder writes to.
+/// The output of a recorder.
 pub(crate) type Output = Box<dyn Write + Send>;
 
 /// The outputs of a tape: one, and after a failure further ones.

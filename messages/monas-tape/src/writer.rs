@@ -80,7 +80,7 @@ pub(crate) struct TapeWriter {
     /// `None` while nothing can be written.
     recorder: Option<Recorder>,
     channels: Vec<OpenChannel>,
-    /// What each file of the tape begins with.
+    /// The entries at the beginning of each file of the tape.
     kept: Vec<KeptEntry>,
     /// Buffer for encodings, kept to reuse its memory.
     bytes: Vec<u8>,

@@ -230,8 +230,8 @@ impl Blackboard {
     /// Delivers the only publication since the last delivery if it is still the front entry.
     #[inline]
     fn deliver_last(&mut self, last: u64, channel: Channel) -> bool {
-        // What was published before the blackboard was created may already have been read, and a
-        // signal among it is not delivered.
+        // Messages published before the blackboard was created may already have been read, and
+        // signals among them are not delivered.
         if self.window.delivered < self.window.since {
             return false;
         }

@@ -1,4 +1,4 @@
-//! What readers check before they take the hub's lock.
+//! A lock-free index of publications, which readers check before they take the hub's lock.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 

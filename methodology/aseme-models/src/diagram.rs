@@ -49,7 +49,7 @@ fn reference(shape: roxmltree::Node<'_, '_>) -> Option<String> {
     Some(text.rsplit_once('#').map_or(text, |(_, fragment)| fragment).to_owned())
 }
 
-/// Where a shape is drawn; a size of -1 is that of its content.
+/// The frame of a shape; a size of -1 is that of its content.
 fn frame(shape: roxmltree::Node<'_, '_>) -> Option<Frame> {
     let bounds = elements(shape).find(|child| child.tag_name().name() == "layoutConstraint")?;
     let number = |name: &str| bounds.attribute(name).map_or(Some(0.0), |text| text.parse::<f64>().ok());

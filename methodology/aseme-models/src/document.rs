@@ -88,7 +88,7 @@ impl SpannedText {
     }
 }
 
-/// Where the last word of a text begins.
+/// The beginning of the last word of a text.
 pub(crate) fn last_word(text: &str) -> usize {
     text.char_indices().rfind(|(_, c)| c.is_whitespace()).map_or(0, |(at, blank)| at + blank.len_utf8())
 }

@@ -46,9 +46,9 @@ pub use outline::{
 /// Replaces a span of a text.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub struct TextEdit {
-    /// What is replaced, in bytes of the text before all edits; empty for an insertion.
+    /// The replaced text, in bytes of the text before all edits; empty for an insertion.
     pub span: Span,
-    /// What replaces it.
+    /// The replacement.
     pub text: String,
 }
 
@@ -154,7 +154,7 @@ pub enum ModelEdit {
 pub struct EditRefusal {
     /// The reason.
     pub message: String,
-    /// What can be done instead, if anything is known.
+    /// An alternative, if one is known.
     pub hint: Option<String>,
 }
 

@@ -62,7 +62,7 @@ pub(crate) struct Feature {
     pub(crate) kind: FeatureKind,
 }
 
-/// What a feature holds.
+/// The kind of a feature's values.
 #[derive(Clone, Copy)]
 pub(crate) enum FeatureKind {
     /// A text, in one line if possible.

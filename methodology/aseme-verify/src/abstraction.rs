@@ -29,9 +29,9 @@ pub(crate) struct Abstraction {
     pub(crate) conditions: Vec<Option<Expression>>,
     /// The assignment that each script stands for.
     pub(crate) assignments: Vec<Option<Assignment>>,
-    /// What is so once it was executed.
+    /// The facts that hold after its execution.
     facts: Vec<Option<Expression>>,
-    /// What triggers wait for, as written.
+    /// The events that triggers await, as written.
     pub(crate) awaited: Vec<Path>,
     pub(crate) constants: Vec<Constant>,
     /// The external events.
@@ -110,7 +110,7 @@ impl Abstraction {
         }
     }
 
-    /// What actions write, some more conditions standing behind those of the chart.
+    /// The writes of actions; `more` conditions follow those of the chart.
     pub(crate) fn effects<'a>(&'a self, more: &[&'a Expression]) -> WriteEffects<'a> {
         let more = more.to_vec();
         let changes = move |action: ScriptId, fact: ScriptId| {
@@ -142,7 +142,7 @@ impl Abstraction {
         }
     }
 
-    /// What a value of a condition says, or that an action was executed.
+    /// The claim that follows from the value of a condition, or from the execution of an action.
     fn claim<'a>(&'a self, script: ScriptId, value: bool, more: &[&'a Expression]) -> Option<Claim<'a>> {
         match self.condition(script, more) {
             Some(condition) if value => Some(Claim::Holds(condition)),
@@ -178,7 +178,7 @@ struct AbstractionBuilder {
     timers: BTreeSet<timers::TimerKey>,
     /// The parsed condition for each text.
     conditions: BTreeMap<String, Expression>,
-    /// What the text of each assignment says.
+    /// The assignment of each text.
     assignments: BTreeMap<String, Assignment>,
 }
 

@@ -83,7 +83,7 @@ pub struct Check {
     pub kind: CheckMethod,
     /// The highest severity of its findings.
     pub severity: Severity,
-    /// What it finds.
+    /// The faults that it finds.
     pub title: &'static str,
 }
 

@@ -1,4 +1,4 @@
-//! What a verification found, with the trace that leads there.
+//! Findings of a verification, with the traces that lead there.
 
 use std::fmt;
 

@@ -49,7 +49,7 @@ const ALTERNATIVES: usize = 2_500;
 /// The same for the conditions of a whole run.
 const MANY_ALTERNATIVES: usize = 20_000;
 
-/// What is asked of a condition.
+/// A claim about a condition.
 #[derive(Clone, Copy, Debug)]
 pub enum Claim<'a> {
     /// It is true.

@@ -45,7 +45,7 @@ use aseme::path::shortest_transition;
 
 use crate::diagnostic_names::DiagnosticNames;
 
-/// What was changed.
+/// The kind of a change.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
 pub enum MutationKind {
     /// A guard is negated.
@@ -118,7 +118,7 @@ pub struct Mutant {
     pub path: String,
     /// The change, in the notation of the model.
     pub description: String,
-    /// What a scenario has to distinguish to detect it.
+    /// The distinction that a scenario has to make to detect it.
     pub wanted: String,
     /// The span of the changed element in the model's text; the beginning if it has none.
     pub span: Span,

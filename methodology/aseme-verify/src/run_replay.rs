@@ -79,7 +79,7 @@ impl<'a> RunReplay<'a> {
         self.machine.configuration()
     }
 
-    /// What is so of the newest messages, on the blackboard of the root.
+    /// Records a fact about the newest messages, on the blackboard of the root.
     pub(crate) fn claim(&mut self, condition: &Expression, holds: bool) {
         self.host.claim_of_root(condition, holds);
     }

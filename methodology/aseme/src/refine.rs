@@ -145,7 +145,7 @@ impl<'a> Lookup<'a> {
     }
 }
 
-/// What one entry names.
+/// The element that an entry names.
 struct RefinementTarget<'a, Id> {
     text: &'a str,
     span: Span,

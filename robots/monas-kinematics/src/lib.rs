@@ -1,4 +1,4 @@
-//! Where the links of a robot and its centre of mass are, from the angles of its joints.
+//! Forward kinematics: the poses of a robot's links and its centre of mass, from its joint angles.
 //!
 //! A [`LinkTree`] is made of the links of an [`Anatomy`], once. Frames are those of the links; the
 //! first one is the torso. The functions are of `libm`, so that results are equal on all machines.

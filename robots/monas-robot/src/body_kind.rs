@@ -11,20 +11,21 @@ use crate::{BodyFault, BodyOption, Disturbances, Error, ErrorKind, FieldColours,
 pub struct BodyKind {
     /// The name that configurations use.
     pub name: &'static str,
-    /// What it is, in one line.
+    /// A description in one line.
     pub summary: &'static str,
-    /// What a configuration can say of it beside its address: further attributes of `body`.
+    /// The further attributes of `body` that a configuration may set, beside its address.
     pub options: &'static [BodyOption],
     /// Whether a body with these settings has a time of its own: each call of
     /// [`sense`](Robot::sense) then makes one cycle of a simulation elsewhere and waits for it, and
     /// the run is one in simulated time. Other bodies are in real time, or in the time of the
     /// simulated world around them.
     pub has_own_time: fn(&BodySettings) -> bool,
-    /// What a body with these settings cannot do, or does in another way than the field's own
-    /// bodies, which have no limits. It is reported before a run, with the activities concerned.
+    /// The capabilities that a body with these settings lacks, or has only in part, compared with
+    /// the bodies of the embedded field. They are reported before a run, with the activities
+    /// concerned.
     pub limits: fn(&BodySettings, Surroundings) -> Vec<BodyLimit>,
-    /// What is wrong with settings whose options are each of their kind: values that do not go
-    /// together, files with wrong contents. A configuration with a fault is refused before a run.
+    /// Faults of settings whose options are each of their kind: contradictory values, files with
+    /// wrong contents. A configuration with a fault is refused before a run.
     pub faults: fn(&BodySettings, Surroundings) -> Vec<BodyFault>,
     /// Opens a body of this kind.
     pub open: OpenBody,
@@ -38,10 +39,10 @@ pub struct BodyKind {
 /// Opens a body at a site.
 pub type OpenBody = fn(BodySite) -> Result<Box<dyn Robot>, Error>;
 
-/// What a body cannot do, or does in another way than software may expect.
+/// A capability that a body lacks, or has in another way than software may expect.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub struct BodyLimit {
-    /// What is limited.
+    /// The limited capability.
     pub capability: Capability,
     /// How, as a clause: `the robot cannot stand up by itself`.
     pub effect: Cow<'static, str>,
@@ -64,7 +65,7 @@ impl BodyLimit {
     }
 }
 
-/// What is around a body.
+/// The environment of a body.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Surroundings {
     /// A place of its own: reality, or a simulation that the kind of the body reaches by itself.
@@ -82,7 +83,7 @@ pub enum Capability {
     Topic(&'static str),
 }
 
-/// Where a body is opened.
+/// The address, settings and environment with which a body is opened.
 #[derive(Default)]
 pub struct BodySite {
     /// The address that the configuration names; by default the usual one of the kind.
@@ -99,21 +100,21 @@ pub struct BodySite {
 pub struct BodySettings {
     /// The name of its kind.
     pub kind: String,
-    /// Where its interface answers; by default where the kind expects it.
+    /// The address of its interface; by default that of its kind.
     pub address: Option<String>,
     /// The options of its kind that are given.
     pub options: BTreeMap<String, String>,
-    /// What its cameras deliver.
+    /// The output of its cameras.
     pub vision: CameraOutput,
     /// The width of its images, pixels; by default that of its kind.
     pub image_width: Option<u32>,
     /// The colours of the field that its images carry, for the calibration to begin with.
     pub colours: Option<FieldColours>,
-    /// What lies between the body and the software.
+    /// Simulated disturbances between the body and the software.
     pub disturbances: Disturbances,
 }
 
-/// What the cameras of a body deliver.
+/// The output of a body's cameras.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub enum CameraOutput {
     /// Finished sightings, without images: a simulated body then senses much faster.
@@ -165,13 +166,12 @@ impl BodySettings {
         serve(BodySite { address: Some(address), options, simulated: Some(simulated) })
     }
 
-    /// What the body cannot do there, see [`BodyKind::limits`]; nothing if there is no such kind.
+    /// The limits of the body there, see [`BodyKind::limits`]; empty for an unknown kind.
     pub fn limits(&self, surroundings: Surroundings) -> Vec<BodyLimit> {
         BodyKind::named(&self.kind).map(|kind| (kind.limits)(self, surroundings)).unwrap_or_default()
     }
 
-    /// What is wrong with the settings there, see [`BodyKind::faults`]; nothing if there is no such
-    /// kind.
+    /// The faults of the settings there, see [`BodyKind::faults`]; empty for an unknown kind.
     pub fn faults(&self, surroundings: Surroundings) -> Vec<BodyFault> {
         BodyKind::named(&self.kind).map(|kind| (kind.faults)(self, surroundings)).unwrap_or_default()
     }

@@ -1,4 +1,4 @@
-//! What configurations can say of a kind of body: further attributes of `body`.
+//! Options of a kind of body: further attributes of `body` in configurations.
 
 use std::fmt;
 
@@ -9,9 +9,9 @@ use crate::{Anatomy, Error, ErrorKind};
 pub struct BodyOption {
     /// The attribute that configurations use.
     pub name: &'static str,
-    /// What its values are.
+    /// The kind of its values.
     pub kind: OptionKind,
-    /// What it means, with its default.
+    /// Its meaning, with the default.
     pub doc: &'static str,
 }
 
@@ -39,7 +39,7 @@ pub enum OptionKind {
     Anatomy(fn() -> &'static Anatomy),
 }
 
-/// What is wrong with the settings of a body, at one of its attributes.
+/// A fault of a body's settings, at one of its attributes.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub struct BodyFault {
     /// The attribute.

@@ -65,7 +65,7 @@ pub use robot::{Error, ErrorKind, Percepts, Robot};
 pub use skill_progress::SkillProgress;
 pub use wrapped_body::{Disturbances, WrappedBody};
 
-/// What [`body_kind!`] expands to.
+/// The expansion of [`body_kind!`].
 #[doc(hidden)]
 pub mod linked {
     pub use crate::body_kind::BODY_KINDS;

@@ -25,7 +25,7 @@ pub struct Percepts {
     pub joints: Option<Joints>,
     /// The inertial unit, if the body has one.
     pub inertial: Option<Inertial>,
-    /// What touches the body, if it feels it.
+    /// Contacts of the body, if it has sensors for them.
     pub contacts: Option<Contacts>,
     /// Distances by sound, if the body measures them.
     pub sonar: Option<Sonar>,

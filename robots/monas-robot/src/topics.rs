@@ -24,7 +24,7 @@ narukom::topic! {
     pub JOINTS: narukom::Data<Joints, 64> = "body/joints";
     /// The inertial unit, of every cycle.
     pub INERTIAL: narukom::Data<Inertial, 64> = "body/inertial";
-    /// What touches the body, of every cycle.
+    /// Contacts of the body, each cycle.
     pub CONTACTS: narukom::State<Contacts> = "body/contacts";
     /// Distances by sound.
     pub SONAR: narukom::State<Sonar> = "body/sonar";

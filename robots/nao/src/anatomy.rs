@@ -60,7 +60,7 @@ pub fn anatomy() -> &'static Anatomy {
 
 static LINKS: LazyLock<LinkTree> = LazyLock::new(|| LinkTree::new(&NAO));
 
-/// Where the links of a Nao V6 are, for the angles of its joints.
+/// The forward kinematics of a Nao V6.
 pub fn links() -> &'static LinkTree {
     &LINKS
 }

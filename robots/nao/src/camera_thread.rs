@@ -16,7 +16,7 @@ const LOST_AFTER: Duration = Duration::from_secs(2);
 /// The pause between two attempts to open a camera.
 const RETRY: Duration = Duration::from_secs(1);
 
-/// What delivers images.
+/// A source of images.
 pub(crate) trait FrameSource {
     /// The next image. None if there is none within the time, or if it is damaged.
     ///

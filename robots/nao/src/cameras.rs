@@ -20,7 +20,7 @@ pub(crate) const BOTTOM: &str = "camera_bottom";
 pub(crate) const TURNED: &str = "camera_top_turned";
 pub(crate) const TODAY: &str = "objects_of_today";
 
-/// Where the cameras are. By default where a Nao V6 has them.
+/// The poses of the cameras on the body; by default those of a Nao V6.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub struct CameraPlaces {
     /// The device of the upper camera.

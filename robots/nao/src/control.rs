@@ -1,5 +1,5 @@
-//! What a Nao does in each cycle: commands in the plane and of joints become an actuator packet,
-//! sensor packets become percepts.
+//! The control cycle of a Nao: converts commands in the plane and of joints to an actuator packet,
+//! and sensor packets to percepts.
 
 use std::collections::BTreeMap;
 
@@ -27,7 +27,7 @@ const POSE_TOLERANCE: f64 = 0.3;
 /// Less weight than this on both soles, kg, and the feet are off the ground.
 const LEAST_WEIGHT: f64 = 0.5;
 
-/// What the joints do.
+/// The motion of the joints.
 #[derive(Debug)]
 enum BodyState {
     /// They do nothing until the first sensors arrive.
@@ -57,7 +57,7 @@ pub(crate) struct NaoControl {
     /// Measured angles, the latest and those before.
     measured: JointAngles,
     measured_before: JointAngles,
-    /// What the joints are commanded, before the commands to single joints.
+    /// The commanded angles, before the commands to single joints.
     angles: JointAngles,
     odometry: [f64; 3],
     packet: ActuatorPacket,

@@ -15,7 +15,7 @@
 //! # Limits
 //!
 //! LoLA has no images, no referee and no radio. Images come from the cameras through Video4Linux.
-//! Where a simulation stands in for the robot, it offers all three on sockets of their own, beside
+//! If a simulation stands in for the robot, it offers all three on sockets of their own, beside
 //! LoLA's; the camera's delivers objects, or images if the configuration asks for them. On a robot
 //! referee and radio are missing. The walk engine and the motions have no feedback of balance: they
 //! are made for the embedded field. Nothing of this has been tried on a robot.
@@ -80,7 +80,7 @@ monas_robot::body_kind!(BodyKind {
     probe,
 });
 
-/// What LoLA lacks, for which simulations offer sockets of their own, and cameras that are missing.
+/// Missing cameras, and the data that LoLA lacks and simulations offer on sockets of their own.
 fn limits(settings: &BodySettings, surroundings: Surroundings) -> Vec<BodyLimit> {
     if !has_cameras(settings, surroundings) {
         return Vec::new();

@@ -31,7 +31,7 @@ pub const CYCLE: std::time::Duration = std::time::Duration::from_millis(12);
 /// [`CYCLE`] in seconds.
 pub const CYCLE_SECONDS: f64 = 0.012;
 
-/// What the robot measures.
+/// The measurements of the robot.
 #[derive(Clone, PartialEq, Debug)]
 pub struct SensorPacket {
     /// Stiffness of each joint, 0 to 1.
@@ -197,7 +197,7 @@ impl SensorPacket {
     }
 }
 
-/// What the robot is to do.
+/// The commands to the robot.
 #[derive(Clone, PartialEq, Debug)]
 pub struct ActuatorPacket {
     /// Target of each joint, rad.

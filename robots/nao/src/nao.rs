@@ -42,7 +42,7 @@ pub struct Nao {
     thread: Option<JoinHandle<()>>,
 }
 
-/// What the thread and the caller share.
+/// State shared by the thread and its caller.
 struct SharedControl {
     state: Mutex<ControlState>,
     changed: Condvar,

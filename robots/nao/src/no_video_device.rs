@@ -1,4 +1,4 @@
-//! Where there is no Video4Linux: no camera can be opened.
+//! Platforms without Video4Linux: no camera can be opened.
 
 use std::convert::Infallible;
 use std::io::{Error, ErrorKind, Result};

@@ -1,4 +1,4 @@
-//! What a configuration can say of this body.
+//! The options of this body in configurations.
 
 use monas_robot::{BodyOption, OptionKind};
 

@@ -73,7 +73,7 @@ impl LolaServer {
         &self.actuators
     }
 
-    /// What the body has felt last.
+    /// The latest sensor values.
     pub(crate) fn sensors(&self) -> Sensors {
         self.percepts.sensors
     }

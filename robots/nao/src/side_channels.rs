@@ -1,4 +1,4 @@
-//! What a Nao has beside LoLA, as far as a simulation stands in for it: camera, referee and radio.
+//! Channels beside LoLA that a simulation offers: camera, referee and radio.
 
 use std::path::{Path, PathBuf};
 
@@ -11,7 +11,7 @@ use crate::socket::{MessageSocket, Socket};
 /// A message without content, for the direction in which nothing is sent.
 type Nothing = ();
 
-/// What the simulated cameras deliver: objects in place of images, or images.
+/// The output of the simulated cameras: objects in place of images, or images.
 #[derive(Clone, PartialEq, prost::Message)]
 pub(crate) struct SimulatedView {
     #[prost(message, optional, tag = "1")]

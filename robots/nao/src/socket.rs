@@ -53,7 +53,7 @@ impl Listener {
 impl Drop for Listener {
     fn drop(&mut self) {
         if self.file.is_some() && file_at(&self.path) == self.file {
-            // What cannot be removed is replaced by the next listener.
+            // If it cannot be removed, the next listener replaces it.
             let _ = std::fs::remove_file(&self.path);
         }
     }

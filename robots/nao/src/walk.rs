@@ -65,7 +65,7 @@ pub struct SteppingWalk {
     moving: bool,
     /// Foot positions and headings in the plane under the torso, left and right.
     feet: [PlanarPose; 2],
-    /// Where the swinging foot left the ground.
+    /// The pose at which the swinging foot left the ground.
     lifted: PlanarPose,
 }
 

@@ -21,7 +21,7 @@ use rand_pcg::Pcg32;
 const KICKS: u32 = 10;
 /// By how much the ball lies beside the place for the kick, m, one row for each.
 const BESIDE: [f64; 4] = [0.0, 0.02, 0.04, 0.06];
-/// Where the robot stands, m.
+/// The position of the robot, m.
 const PLACE: [f64; 2] = [-12.0, 0.0];
 /// Cycles before a kick, and those in which the ball rolls after it.
 const STAND: u32 = 100;
@@ -63,7 +63,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// What a kick did.
+/// The result of a kick.
 struct Kicked {
     /// How far the ball was after the kick, m, and in which direction from the robot's, rad.
     distance: f64,
@@ -88,7 +88,7 @@ impl Table {
         Ok(self.body.act(now, command)?)
     }
 
-    /// Where the ball is on the field, if the robot sees it.
+    /// The position of the ball on the field, if the robot sees it.
     fn ball(&self) -> Option<[f64; 2]> {
         let seen = self.percepts.sightings.as_ref()?;
         let ball = seen.objects.iter().find(|object| object.kind() == ObjectKind::Ball)?;

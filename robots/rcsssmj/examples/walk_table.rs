@@ -100,7 +100,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// What was measured of a command.
+/// The measurements for a command.
 #[derive(Default)]
 struct Row {
     real: [f64; 3],
@@ -143,7 +143,7 @@ impl Table {
     fn stand(&mut self, trial: u32) -> Result<(), Box<dyn std::error::Error>> {
         let height = (self.body.robot().straight_height() * 100.0).ceil() / 100.0;
         let (team, at) = ("Monas".to_owned(), [-12.0, 5.0, height]);
-        // Who is placed while walking has its joints moved by the commands of the walk.
+        // The walk commands the joints of a robot that is placed while walking.
         for _ in 0..STAND {
             self.cycle(&Actuators::default())?;
         }

@@ -40,7 +40,7 @@ pub struct Booster {
     control: BoosterControl,
     rules: MatchRules,
     connection: Connection,
-    /// Where the monitor's commands go, and the connection.
+    /// The address for the monitor's commands, and the connection.
     monitors: Option<String>,
     monitor: Option<Monitor>,
     /// Commands that the monitor has not sent yet, and the cycles until it can.
@@ -110,8 +110,8 @@ impl Booster {
         self.robot
     }
 
-    /// Where the server says that the torso is: x, y and z on the field, m. No percept of the body
-    /// has it; trials compare with it.
+    /// The true position of the torso, from the server: x, y and z on the field, m. No percept of
+    /// the body contains it; trials compare with it.
     pub fn true_position(&self) -> [f64; 3] {
         self.control.percept().true_position
     }
@@ -150,7 +150,7 @@ impl Booster {
             false => self.message.init(self.robot, &options.team, options.number),
         }
         self.connection.send(self.message.as_bytes())?;
-        // What was perceived before it is at its place says nothing.
+        // Percepts from before the body is at its position are discarded.
         self.connection.receive(|_| Ok(()))?;
         let FieldPose { x, y, heading } = options.start;
         // The fall from a height may throw a robot over.
@@ -276,7 +276,7 @@ impl Booster {
 
     fn cycle(&mut self, now: Timestamp) -> Result<(), Error> {
         if self.lockstep {
-            // What was received last is as old as the call before.
+            // The latest percepts are as old as the call before.
             self.measured_at = now;
             return if self.owes_answer { self.exchange() } else { self.receive() };
         }

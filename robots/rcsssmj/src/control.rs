@@ -1,5 +1,5 @@
-//! What a robot does in each cycle: commands in the plane and of joints become commands to motors,
-//! percepts of the server become percepts of the body.
+//! The control cycle of a robot: converts commands in the plane and of joints to commands to
+//! motors, and percepts of the server to percepts of the body.
 
 use monas_robot::{
     Actuators, Anatomy, Error, FallDetector, Inertial, JointCommands, JointTargets, Joints, ObjectKind,
@@ -16,7 +16,7 @@ use crate::match_rules::MatchRules;
 use crate::percept::{Percept, Sight};
 use crate::walk::{Gait, Motion, Motors, Ramp, WalkEngine, WalkVelocity};
 
-/// What the robot does.
+/// The motion of the robot.
 #[derive(Clone, Copy, PartialEq, Debug)]
 enum BodyState {
     /// It follows the walk that is commanded.

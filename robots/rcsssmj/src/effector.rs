@@ -1,4 +1,4 @@
-//! What an agent sends to the server.
+//! The messages from an agent to the server.
 
 use std::fmt::Write;
 

@@ -20,7 +20,7 @@ use crate::error::Error;
 /// ```
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct Items<'a> {
-    /// What is left, with balanced parentheses.
+    /// The unread text, with balanced parentheses.
     rest: &'a [u8],
 }
 

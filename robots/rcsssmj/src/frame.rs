@@ -15,7 +15,7 @@ pub fn write(message: &[u8], bytes: &mut Vec<u8>) {
 #[derive(Clone, Debug, Default)]
 pub struct FrameReader {
     bytes: Vec<u8>,
-    /// Where the first message that was not taken begins.
+    /// The beginning of the first message that was not taken.
     start: usize,
 }
 

@@ -1,5 +1,5 @@
-//! What the robots of the server differ in: the anatomy, which is read from a file, and numbers of
-//! their motions.
+//! The differences between the robots of the server: the anatomy, which is read from a file, and
+//! parameters of their motions.
 
 use std::sync::LazyLock;
 

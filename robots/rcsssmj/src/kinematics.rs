@@ -1,4 +1,4 @@
-//! Where the camera and the feet of a robot are, from its joints.
+//! Forward kinematics of the camera and the feet of a robot.
 //!
 //! Frames: the torso frame has x ahead, y to the left and z up, along the axes of the torso. The
 //! level frame has the same origin and heading, but its z axis is vertical. The robot frame has its
@@ -40,7 +40,7 @@ impl Humanoid {
         self.links.in_torso(Humanoid::link(joint), point, angles)
     }
 
-    /// Where the axis of a joint is fixed to the link before it, in the torso frame.
+    /// The point at which the axis of a joint is fixed to the link before it, in the torso frame.
     ///
     /// # Panics
     /// There is no such joint.

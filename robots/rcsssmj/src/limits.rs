@@ -1,11 +1,11 @@
-//! What a robot on the server cannot do.
+//! The limits of a robot on the server.
 
 use monas_robot::topics::{BATTERY, CONTACTS, HEARD, LEDS, SAID, SIGHTINGS, SONAR};
 use monas_robot::{BodyLimit, BodySettings, Skill};
 
 use crate::options::Options;
 
-/// What is limited, whichever way the robot walks.
+/// The limits that do not depend on the walk.
 const ALWAYS: [BodyLimit; 11] = [
     BodyLimit::skill(Skill::FallLeft, NO_MOTION),
     BodyLimit::skill(Skill::FallRight, NO_MOTION),
@@ -27,7 +27,7 @@ const LIES: BodyLimit = BodyLimit::skill(Skill::StandUp, "a robot that lies wait
 const PICKED_UP: BodyLimit =
     BodyLimit::skill(Skill::StandUp, "a robot that lies is put on its feet by the monitor");
 
-/// What a robot with these settings cannot do.
+/// The limits of a robot with these settings.
 pub(crate) fn limits(settings: &BodySettings) -> Vec<BodyLimit> {
     let mut limits = ALWAYS.to_vec();
     // Wrong options are faults of the configuration.

@@ -1,4 +1,4 @@
-//! What a player has to know of the game: from the percepts of the server, an announcement.
+//! Converts the percepts of the server to an announcement of the state of the game.
 
 use monas_robot::{Announcement, Colour, GamePhase, ObjectKind, SetPlay};
 
@@ -83,7 +83,7 @@ impl MatchRules {
     /// The kind and colour of a goal post. The goal on the left is blue, that on the right yellow:
     /// players tell goals apart by their colours, the server by names.
     pub(crate) fn post(&self, goal: Side, is_upper: bool) -> (ObjectKind, Colour) {
-        // Who faces the goal at +x has +y on the left.
+        // For a robot that faces the goal at +x, +y is on the left.
         let is_left = is_upper == (goal == Side::Right);
         (if is_left { ObjectKind::LeftPost } else { ObjectKind::RightPost }, goal_colour(goal))
     }

@@ -83,7 +83,7 @@ pub enum Command {
         number: u32,
         /// The origin of its torso, m.
         at: [f64; 3],
-        /// Where it faces, rad.
+        /// Its heading, rad.
         heading: f64,
     },
 }

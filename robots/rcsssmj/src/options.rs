@@ -1,4 +1,4 @@
-//! What a configuration can say of this body.
+//! The options of this body in configurations.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -142,7 +142,7 @@ impl Options {
     }
 }
 
-/// What is wrong with settings whose options are each of their kind.
+/// The faults of settings whose options are each of their kind.
 pub(crate) fn faults(settings: &BodySettings) -> Vec<BodyFault> {
     let options = match Options::of(&settings.options) {
         Ok(options) => options,

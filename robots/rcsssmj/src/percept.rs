@@ -1,4 +1,4 @@
-//! What the server sends to an agent in each of its cycles.
+//! The messages from the server to an agent, one each cycle.
 
 use std::f64::consts::PI;
 
@@ -28,7 +28,7 @@ pub struct Percept {
     pub velocities: JointValues,
     /// Whether the message holds what the camera sees, as every second one does.
     pub has_sights: bool,
-    /// What the camera sees.
+    /// The objects that the camera sees.
     pub sights: Vec<Sight>,
 }
 
@@ -144,7 +144,7 @@ pub struct Polar {
     pub elevation: f64,
 }
 
-/// What the camera sees.
+/// An object that the camera sees.
 #[derive(Clone, PartialEq, Debug)]
 pub enum Sight {
     /// The ball: its middle.
@@ -155,14 +155,14 @@ pub enum Sight {
         goal: Side,
         /// Whether it stands at +y.
         is_upper: bool,
-        /// Where.
+        /// The position of its top.
         at: Polar,
     },
     /// A mark of the field's lines, by its name.
     Mark {
         /// The name: `l_luf` is the corner of the field on the left at +y.
         name: String,
-        /// Where.
+        /// The position of the mark.
         at: Polar,
     },
     /// A robot, perhaps a part of the own body.

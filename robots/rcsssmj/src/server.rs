@@ -25,8 +25,8 @@ const RETRY: Duration = Duration::from_millis(5);
 /// The most names that are tried for a folder.
 const MOST_FOLDERS: u32 = 1000;
 
-/// What the server's Python runs first, from the server's folder: version 0.2.1 ends with an error
-/// when a shape without a name touches the ball, as the K1 has.
+/// Code that the server's Python runs first, from the server's folder: version 0.2.1 ends with an
+/// error when a shape without a name touches the ball, as the K1 has.
 const REPAIR: &str = include_str!("sitecustomize.py");
 
 /// Waits until its input ends, which it does when the run has ended in any way; then ends the
@@ -40,7 +40,7 @@ pub struct Server {
     process: Child,
     /// Ends the server if the run cannot. There is none where there are no Unix shells.
     watcher: Option<Child>,
-    /// Where it writes its log.
+    /// The folder of its log.
     folder: PathBuf,
     agents: String,
     monitors: String,

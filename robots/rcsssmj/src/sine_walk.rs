@@ -21,7 +21,7 @@ use crate::walk::{Gait, Motion, Motors, WalkEngine, WalkVelocity};
 pub struct SineWalk {
     robot: &'static Humanoid,
     parameters: SineParameters,
-    /// Where it is in a pair of steps, rad; the left foot swings in the first half.
+    /// The phase in a pair of steps, rad; the left foot swings in the first half.
     clock: f64,
     /// How far the robot has gone into its crouch, and how far the steps have grown: 0 to 1.
     crouched: f64,
@@ -119,8 +119,9 @@ impl SineWalk {
     }
 }
 
-/// Where a foot is in its stride at a phase, from -1 to 1: it swings ahead in the first half, and
-/// goes back in the second with one speed as far as `linear` says, otherwise by a sine.
+/// The position of a foot in its stride at a phase, from -1 to 1: it swings ahead in the first
+/// half, and returns in the second at constant speed for the fraction `linear`, otherwise by a
+/// sine.
 fn swing(clock: f64, linear: f64) -> f64 {
     let clock = libm::fmod(clock + 2.0 * TAU, TAU);
     let sine = -libm::cos(clock);

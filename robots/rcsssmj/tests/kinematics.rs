@@ -22,7 +22,7 @@ const BOUND: f64 = 1e-7;
 /// The joint before the left lower arm.
 const LEFT_ELBOW: usize = 5;
 
-/// Where the server's physics has the points; none, loudly, without its model.
+/// The points according to the server's physics; none, with a note, without its model.
 fn truth(robot: &Humanoid, postures: &[JointValues]) -> Option<Vec<[Point3<f64>; POINTS]>> {
     let mut text = String::new();
     for angles in postures {

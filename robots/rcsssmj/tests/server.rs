@@ -95,7 +95,7 @@ fn the_server_goes_on_when_a_k1_touches_the_ball() {
     run(&mut robot, &mut cycle, 4.0, &Actuators::default());
 }
 
-/// What a robot feels in a run with falls and placements, bit for bit.
+/// The sensor values of a robot in a run with falls and placements, bit for bit.
 fn felt(robot: &Humanoid) -> Option<Vec<[u64; 4]>> {
     let mut robot = start(robot)?;
     let (mut percepts, mut felt) = (Percepts::default(), Vec::new());

@@ -123,7 +123,7 @@ fn folders_of(path: &Path, working_folder: &Path) -> Vec<PathBuf> {
     let mut folders: Vec<PathBuf> = path.ancestors().skip(1).map(Path::to_owned).collect();
     if path.is_relative() {
         let upwards = path.components().take_while(|part| *part == Component::ParentDir).count();
-        // What remains of `../..` without its last part is no parent of it.
+        // The rest of `../..` without its last part is no parent of it.
         folders.truncate(folders.len().saturating_sub(upwards));
         let depth = working_folder.ancestors().skip(1).count();
         let above = (upwards + 1..=depth).map(|parents| PathBuf::from_iter(vec![".."; parents]));

@@ -59,14 +59,14 @@ pub struct CallTiming {
     pub cpu: Option<Duration>,
 }
 
-/// What an activity returned.
+/// The result of an activity's call.
 pub(crate) type CallResult = Result<Progress, CallFailure>;
 
 /// A completed call.
 pub struct FinishedCall {
     /// The call, with its activity and blackboard.
     pub call: ActivityCall,
-    /// What the activity returned.
+    /// The result of the call.
     pub result: CallResult,
     /// None where calls are not measured.
     pub timing: Option<CallTiming>,

@@ -94,7 +94,7 @@ pub trait ChartDriver {
     fn cycle(&self) -> u64;
 }
 
-/// What a driver did with a call.
+/// A driver's answer to a call.
 pub enum Dispatch {
     /// The call returns through [`ChartDriver::next_return`].
     Submitted,

@@ -228,7 +228,7 @@ impl LeakDetector {
             return false;
         }
         self.calls = 0;
-        // What the first window holds is held from the beginning, and no growth.
+        // The use in the first window is the baseline, not growth.
         if self.last.is_some_and(|last| self.floor > last) {
             self.rises += 1;
         } else {

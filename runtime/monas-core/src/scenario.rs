@@ -69,7 +69,7 @@ pub struct ScenarioDifference {
     pub passage: ScenarioPart,
     /// The expectation, as the scenario states it where it does.
     pub expected: String,
-    /// What was observed instead.
+    /// The observation that contradicts it.
     pub seen: String,
 }
 

@@ -32,7 +32,7 @@ pub fn write_new(path: impl AsRef<Path>, content: impl AsRef<[u8]>) -> io::Resul
     let mut file = OpenOptions::new().write(true).create_new(true).open(path)?;
     let written = file.write_all(content.as_ref()).and_then(|()| file.sync_all());
     if written.is_err() {
-        // What was written of it is of no use.
+        // A partly written file is of no use.
         let _ = fs::remove_file(path);
     }
     written

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 /// The largest number in the name of a file.
 const NAMESAKES: u32 = 999_999;
 
-/// What happens to a file that has the requested name.
+/// The treatment of an existing file with the requested name.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub enum ExistingFile {
     /// It stays; the new file gets the next free name: `run-2.mcap`.

@@ -30,7 +30,7 @@ pub fn seal(path: impl AsRef<Path>) -> io::Result<()> {
 /// Checks the parts of a file and, if it is sealed, its hash.
 ///
 /// # Errors
-/// What is wrong with it.
+/// A message for people.
 pub(crate) fn check(bytes: &[u8], note: &BuildFingerprint) -> Result<(), String> {
     let file = object::File::parse(bytes).map_err(|error| error.to_string().to_lowercase())?;
     let is_outside =
@@ -49,7 +49,7 @@ pub(crate) fn check(bytes: &[u8], note: &BuildFingerprint) -> Result<(), String>
     }
 }
 
-/// Where the note of a file states the hash of its content.
+/// The position at which the note of a file states the hash of its content.
 fn place(bytes: &[u8]) -> Option<Range<usize>> {
     let file = object::File::parse(bytes).ok()?;
     let (offset, size) = file.section_by_name(note::SECTION)?.file_range()?;

@@ -9,7 +9,7 @@ use yase::NodeId;
 /// From this rate on a loop is reported: calls per second that only returns of activities caused.
 const RATE: f64 = 1000.0;
 
-/// What removes such a loop.
+/// The remedy for such a loop.
 pub(crate) const LOOP_REMEDY: &str =
     "let an activity return `Ongoing`, or wait in a transition for a message, an event or a timer";
 
@@ -33,7 +33,7 @@ pub(crate) struct FreeLoop {
     was_reported: bool,
 }
 
-/// What an interval has shown.
+/// The observation of an interval.
 #[derive(Clone, PartialEq, Debug)]
 pub(crate) enum LoopReport {
     /// A loop has begun.

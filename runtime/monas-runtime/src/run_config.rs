@@ -1,4 +1,4 @@
-//! What a run consists of: hosts with their agents and bodies, and the world.
+//! The parts of a run: hosts with their agents and bodies, and the world.
 
 use std::sync::Arc;
 use std::time::Duration;

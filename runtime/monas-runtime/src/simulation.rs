@@ -244,7 +244,7 @@ impl Simulation {
         }
     }
 
-    /// What the watchdog knows.
+    /// The run as the watchdog sees it.
     pub(crate) fn watched(&self) -> &Arc<WatchedRun> {
         self.watchdog.watched()
     }

@@ -24,7 +24,7 @@ pub(crate) struct SimulationThread {
     jobs: Sender<SimulationJob>,
 }
 
-/// What the thread is to do, with the simulation, and where both go afterwards.
+/// A command to the thread, with the simulation, and the destination of both afterwards.
 struct SimulationJob {
     simulation: Simulation,
     work: SimulationWork,

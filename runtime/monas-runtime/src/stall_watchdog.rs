@@ -47,7 +47,7 @@ impl StallWatchdog {
         StallWatchdog { watched, stopper: StopHandle::new(), thread: None }
     }
 
-    /// What it watches.
+    /// The run that it watches.
     pub(crate) fn watched(&self) -> &Arc<WatchedRun> {
         &self.watched
     }

@@ -13,7 +13,7 @@ use narukom::PublisherId;
 pub use goalie::BehaviorGoalie;
 pub use player::BehaviorPlayer;
 
-/// What both behaviours know of the start of the robot and of the messages they have used.
+/// The start of the robot and the messages used so far, for both behaviours.
 #[derive(Clone, Copy, Debug, Default)]
 struct StartUp {
     has_stood_up: bool,

@@ -20,14 +20,14 @@ use nalgebra::{Point2, Vector2};
 use crate::thresholds::goalie::{ACT_WITHIN, DIVE_FROM, FALL_FROM};
 use crate::thresholds::player::*;
 
-/// Where the head is to look.
+/// The target of the head.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(crate) enum Look {
     Scan,
     At(Gaze),
 }
 
-/// What a behaviour requested in one decision; none of it if it did not decide.
+/// The requests of a behaviour in one decision; none if it did not decide.
 pub(crate) type Requests = (Option<Look>, Option<DesiredMotion>);
 
 /// A decision, by the name of the state in which the role ends.
@@ -164,7 +164,7 @@ impl Case {
         assert_eq!(motion, expected_motion, "{}: {:?} moves so", self.scenario, self.decision);
     }
 
-    /// What the skills of the decision's states request.
+    /// The requests of the skills in the decision's states.
     fn requests(&self) -> Requests {
         let (field, pose, ball) = (game().field(), self.pose.field_from_robot(), self.ball.position());
         let watch = Some(Look::At(HeadController::default().look_at(ball)));

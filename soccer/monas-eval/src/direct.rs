@@ -43,7 +43,7 @@ pub(crate) enum GazeRequest {
     Scan,
 }
 
-/// What the modules tell each other.
+/// The data that the modules exchange.
 #[derive(Clone, Debug)]
 pub struct SharedMemory {
     pub(crate) now: Timestamp,

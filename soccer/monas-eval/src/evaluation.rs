@@ -47,7 +47,7 @@ impl Methodology {
     }
 }
 
-/// What is played.
+/// The matches of an evaluation.
 #[derive(Clone, Debug)]
 pub struct EvaluationSettings {
     /// The folder with the match files, `config/evaluation`.
@@ -75,7 +75,7 @@ pub struct PlayFigures {
     pub falls: u32,
 }
 
-/// What the programs of one robot cost in a match against robots without programs. Allocations and
+/// The costs of one robot's programs, in a match against robots without programs. Allocations and
 /// messages are those beyond a match in which no robot has a program.
 #[derive(Clone, Copy, PartialEq, Default, Debug)]
 pub struct CostFigures {
@@ -122,7 +122,7 @@ impl fmt::Display for Error {
 
 impl std::error::Error for Error {}
 
-/// What finds faults of behaviour first, by `cargo xtask eval-faults`; sums follow a blank line.
+/// The first check that finds each fault, by `cargo xtask eval-faults`; sums follow a blank line.
 const FOUND: &str = include_str!("../faults/found.txt");
 /// Cycles of a body in a second.
 const CYCLES: f64 = 50.0;

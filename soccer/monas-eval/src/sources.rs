@@ -1,4 +1,4 @@
-//! What was written for each methodology, counted in the sources that this crate was built from.
+//! Measures of the code of each methodology, from the sources that this crate was built from.
 //!
 //! - **Lines**: lines with code. Blank lines, comments and tests do not count.
 //! - **Unit**: a file of the behaviour, or an activity of the roles. Modules that all ways share

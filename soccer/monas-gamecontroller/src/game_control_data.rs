@@ -155,7 +155,7 @@ impl GameControlData {
         Ok(packet)
     }
 
-    /// What the packet says to one robot; none if its team does not play, or has no such player.
+    /// The packet's content for one robot; none if its team or player does not take part.
     ///
     /// STANDBY is INITIAL with [`halted`](Announcement::halted), which a stopped game is as well.
     /// Placements and the size of the field are not in the packet and stay unset. The left goal

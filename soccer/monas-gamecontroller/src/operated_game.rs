@@ -132,7 +132,7 @@ impl OperatedGame {
         self.data.competition.rules()
     }
 
-    /// What the rule book does not define is not permitted.
+    /// Refuses numbers that the rule book does not define.
     fn permit(&self, number: Result<u8, crate::Error>) -> Result<(), String> {
         number.map(drop).map_err(|error| error.to_string())
     }

@@ -12,7 +12,7 @@ const NEVER: f32 = -1.0;
 /// The length of return data in bytes.
 pub const RETURN_DATA_LENGTH: usize = 32;
 
-/// What a robot reports of itself, version 4. Poses are in millimetres, as in the packet.
+/// A robot's report of its state, version 4. Poses are in millimetres, as in the packet.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct ReturnData {
     /// The number of the player, from 1 to 20.

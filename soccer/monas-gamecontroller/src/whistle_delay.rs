@@ -27,8 +27,8 @@ impl WhistleDelay {
         WhistleDelay { delay, truth: None, hidden: None }
     }
 
-    /// What players may know of the true state now: its clocks and penalties always; the state, the
-    /// score and who kicks once the delay has passed.
+    /// The part of the true state that players may know now: its clocks and penalties always; the
+    /// state, the score and the kicking team once the delay has passed.
     pub fn shown(&mut self, truth: &GameControlData, now: Timestamp) -> GameControlData {
         if let Some(before) = self.truth.replace(truth.clone()) {
             if is_whistled(&before, truth) {
@@ -104,7 +104,7 @@ mod tests {
         assert_eq!(state(&truth, 36), (LeagueState::Set, 1), "SET has no whistle");
     }
 
-    /// What players are shown at these seconds: state and score of the first team.
+    /// The state and the score of the first team shown to players at these seconds.
     fn shown(steps: &[(u64, &GameControlData)]) -> Vec<(LeagueState, u8)> {
         let mut whistle = WhistleDelay::new(Duration::from_secs(15));
         let shown = |(seconds, truth): &(u64, &GameControlData)| {

@@ -9,7 +9,7 @@ use monas_gamecontroller::{
 };
 use narukom::Timestamp;
 
-/// What arrives; packets on the loopback interface arrive soon, but not always at once.
+/// The next message; packets on the loopback interface arrive soon, but not always at once.
 fn arrived<T>(mut receive: impl FnMut() -> std::io::Result<Option<T>>) -> T {
     let found = (0..10_000_000).find_map(|_| {
         std::thread::yield_now();

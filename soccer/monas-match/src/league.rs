@@ -14,7 +14,7 @@ const PACKETS: usize = 64;
 /// The most different problems that are reported.
 const PROBLEMS: usize = 16;
 
-/// What a match has exchanged with a GameController, or as one.
+/// Counts of packets that a match has exchanged with a GameController, or as one.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub struct LeagueCounts {
     /// Packets of control data: received by the robots, or sent by the referee.
@@ -36,7 +36,7 @@ pub(crate) trait LeagueEnd: Send {
     ) -> Result<(), BoxError>;
 }
 
-/// What has happened at one end of the protocol.
+/// The packets and errors at one end of the protocol.
 #[derive(Default)]
 pub(crate) struct LeagueJournal {
     pub(crate) counts: LeagueCounts,

@@ -31,14 +31,14 @@ pub(crate) struct LeaguePlayers {
     report_due: Timestamp,
 }
 
-/// What the agents of each robot believe, by its host.
+/// The beliefs of each robot, by its host.
 #[derive(Clone)]
 struct Beliefs {
     hosts: Arc<[String]>,
     robots: Arc<Mutex<Vec<Belief>>>,
 }
 
-/// What a robot believes.
+/// The belief of a robot.
 #[derive(Clone, Copy, Default)]
 struct Belief {
     pose: Pose,
@@ -69,7 +69,7 @@ impl LeaguePlayers {
         Box::new(self.beliefs.clone())
     }
 
-    /// What control data announces to each robot; an error if a robot does not play.
+    /// The announcements of control data to each robot; an error if a robot does not play.
     fn announcements(&self, control: &GameControlData) -> Result<Vec<Announcement>, String> {
         let [first, second] = control.teams.each_ref().map(|team| team.number);
         let announcement = |&(team, number): &(u8, u8)| {

@@ -145,7 +145,7 @@ pub struct MatchPlan {
     files: ConfigurationBundle,
     settings: String,
     embody: Embody,
-    /// Where the bodies of robots with processes of their own are served, given the host.
+    /// The addresses of bodies of robots with processes of their own, given the host.
     addresses: Option<Addresses>,
 }
 
@@ -190,7 +190,7 @@ struct RobotPlan {
     source: Option<Arc<Source>>,
 }
 
-/// What determines the time of a match.
+/// The source of the time of a match.
 #[derive(Clone, Copy)]
 enum MatchTime {
     Simulated,

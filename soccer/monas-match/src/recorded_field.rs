@@ -121,7 +121,7 @@ impl RecordedField {
     }
 }
 
-/// What the recording says up to some time.
+/// The recorded state of the field at a time.
 struct FieldState<'a> {
     field: &'a RecordedField,
     truth: Option<Truth>,

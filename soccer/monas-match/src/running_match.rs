@@ -137,7 +137,7 @@ impl RunningMatch {
             || (self.league.is_some() && self.pitch.with_world(has_ended))
     }
 
-    /// What the match has exchanged with a GameController, or as one; none if it has neither.
+    /// Counts of packets exchanged with a GameController, or as one; none if it has neither.
     pub fn league(&self) -> Option<LeagueCounts> {
         self.league.as_ref().map(League::counts)
     }
@@ -234,7 +234,7 @@ fn timestamp(time: Duration) -> Timestamp {
     Timestamp::from_nanos(u64::try_from(time.as_nanos()).unwrap_or(u64::MAX))
 }
 
-/// What the end of the agents leaves.
+/// The results of the agents at their end.
 struct RunEnd {
     statistics: Statistics,
     coverage: Vec<ChartCoverage>,

@@ -61,7 +61,7 @@ pub struct MatchSummary {
     pub coverage: Vec<monas::ChartCoverage>,
     /// Statistics of the robots' links.
     pub links: Vec<monas::LinkStatistics>,
-    /// What was exchanged with a GameController, or as one.
+    /// Counts of packets exchanged with a GameController, or as one.
     pub league: Option<crate::LeagueCounts>,
     /// The failure of the field that has ended a match in real time.
     pub failure: Option<String>,

@@ -1,4 +1,4 @@
-//! What the studio draws of soccer.
+//! Drawings of soccer for the studio.
 //!
 //! The studio knows no sport and no body: a program gives it a [`monas_studio::Scene`], which draws
 //! what lies on the plane, and [`monas_studio::Cameras`], which reads images. [`SoccerField`] is

@@ -147,8 +147,8 @@ fn attacks_left(host: &str, messages: &SceneMessages<'_>) -> bool {
     messages.of(host, GAME_STATE).is_some_and(|game| game["goal_to_attack"] == "BLUE")
 }
 
-/// Where a robot sees lines, from where it believes that it is. It publishes the pose with the
-/// lines, at most one cycle after their images.
+/// The lines that a robot sees, on the field, from its believed pose. It publishes the pose with
+/// the lines, at most one cycle after their images.
 fn seen_lines(host: &str, seen: &Value, messages: &SceneMessages<'_>) -> Vec<SeenLine> {
     let pose = messages.of(host, POSE).unwrap_or(&Value::Null);
     let [Some(x), Some(y), Some(heading)] = ["x", "y", "heading"].map(|field| number(pose, field)) else {
@@ -167,7 +167,7 @@ fn seen_lines(host: &str, seen: &Value, messages: &SceneMessages<'_>) -> Vec<See
     seen["lines"].as_array().into_iter().flatten().filter_map(line).collect()
 }
 
-/// Where a robot believes that it and the ball are.
+/// The believed positions of a robot and of the ball.
 fn beliefs(host: &str, pose: &Value, messages: &SceneMessages<'_>) -> Vec<Belief> {
     let fields = ["x", "y", "heading", "confidence"].map(|field| number(pose, field));
     let [Some(x), Some(y), Some(heading), Some(confidence)] = fields else { return Vec::new() };
@@ -207,7 +207,7 @@ fn banner(score: &Value, messages: &SceneMessages<'_>) -> Banner {
     Banner { groups: teams.map(group).collect(), text }
 }
 
-/// What a person can decide as the referee, on the host that has the field.
+/// The decisions of the referee that a person can make, on the host that has the field.
 fn calls(host: &str, score: &Value, messages: &SceneMessages<'_>) -> Vec<SceneAction> {
     let call = |label: &str, about: Option<&str>, message: Value| SceneAction {
         label: label.to_owned(),

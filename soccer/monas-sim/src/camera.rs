@@ -41,7 +41,7 @@ pub enum Sighting {
     },
     /// A place of the lines. Its distance is computed from its elevation.
     Line {
-        /// What it is.
+        /// Its kind.
         feature: LineFeature,
         /// Its apparent position.
         percept: Percept,

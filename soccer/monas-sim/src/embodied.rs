@@ -49,8 +49,8 @@ pub(crate) struct SharedWorld {
     pub(crate) world: SimulatedWorld,
     /// Radio messages that the robots have not received yet.
     pub(crate) air: RadioChannel,
-    /// What a referee outside the simulation has announced to each robot: nothing, if it has not
-    /// spoken yet; none without such a referee.
+    /// The latest announcement of a referee outside the simulation to each robot: empty before the
+    /// first announcement; none without such a referee.
     pub(crate) league: Option<Vec<Announcement>>,
 }
 

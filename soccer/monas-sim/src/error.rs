@@ -24,7 +24,7 @@ pub enum ErrorKind {
     Lineup,
     /// No robot has this index.
     UnknownRobot,
-    /// What a person decides as the referee is not possible in the present state of the game.
+    /// A person's decision as the referee is not possible in the present state of the game.
     IllegalCall,
 }
 

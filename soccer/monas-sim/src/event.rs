@@ -7,11 +7,11 @@ use crate::{GameState, Offence, Side, Vector};
 pub struct SimulationEvent {
     /// Time since the world began, s.
     pub time: f64,
-    /// What happened.
+    /// Its kind.
     pub kind: EventKind,
 }
 
-/// What happened.
+/// The kind of an event.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum EventKind {
@@ -120,12 +120,12 @@ pub enum EventKind {
     ThrowIn {
         /// The team that touched it last, if any has.
         against: Option<usize>,
-        /// Where it is put, in the field frame.
+        /// Its new position, in the field frame.
         position: Vector,
     },
     /// No robot touched the ball for long, so the referee drops it.
     DropBall {
-        /// Where, in the field frame.
+        /// Its position, in the field frame.
         position: Vector,
     },
 }

@@ -37,7 +37,7 @@ pub struct PicturedRobot {
     pub on_field: bool,
     /// Whether it stands or walks.
     pub upright: bool,
-    /// Where it believes the ball to be, in the field frame, if it does.
+    /// The believed position of the ball, in the field frame, if there is one.
     pub believed_ball: Option<Vector>,
 }
 

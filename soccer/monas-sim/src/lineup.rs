@@ -130,7 +130,7 @@ pub struct RobotSetup {
 /// The most robots that a team may have.
 pub(crate) const TEAM_SIZE: usize = 11;
 
-/// What is wrong in teams and robots, and where.
+/// A fault of teams and robots, with its position.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{message}")]
 pub struct LineupError {

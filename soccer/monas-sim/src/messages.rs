@@ -16,7 +16,7 @@ pub mod topics {
         pub SCORE: narukom::State<Score> = "sim/score";
         /// Notable events, published when they happen.
         pub INCIDENT: narukom::Data<Incident, 64> = "sim/incident";
-        /// What a person decides as the referee, published from outside of the run.
+        /// A person's decision as the referee, published from outside the run.
         pub REFEREE: narukom::Signal<RefereeCall> = "sim/referee";
     }
 }

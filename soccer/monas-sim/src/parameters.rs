@@ -18,7 +18,7 @@ pub struct Parameter {
     pub least: f64,
     /// The greatest value allowed.
     pub most: f64,
-    /// What it means and where the value comes from.
+    /// Its meaning and the source of the value.
     pub doc: &'static str,
 }
 

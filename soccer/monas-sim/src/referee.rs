@@ -52,7 +52,7 @@ impl GameState {
 /// A penalty that a robot serves.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Penalty {
-    /// What it did.
+    /// Its offence.
     pub offence: Offence,
     /// Time until it may come back, s.
     pub remaining: f64,
@@ -114,9 +114,9 @@ pub struct Referee {
     touched_since_kick_off: bool,
     fouls: FoulDetector,
     coin: RandomStream,
-    /// What a referee outside the simulation has decided, if there is one.
+    /// The decisions of a referee outside the simulation, if there is one.
     order: Option<GameOrder>,
-    /// What a person has decided since the last step.
+    /// A person's decisions since the last step.
     called: Vec<EventKind>,
     is_stopped: bool,
 }
@@ -192,7 +192,7 @@ impl Referee {
         self.defends
     }
 
-    /// What each team wears now, by index.
+    /// The present colours of the teams, by index.
     pub fn colours(&self) -> [TeamColour; 2] {
         self.colours
     }

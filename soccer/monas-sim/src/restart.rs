@@ -51,7 +51,7 @@ fn spread(field: &FieldGeometry, rank: usize, clear_of_circle: f64) -> Vector {
     if place.norm() >= clear_of_circle { place } else { place * (clear_of_circle / place.norm()) }
 }
 
-/// Where a ball that left the field at `position` is put back: on the throw-in line, set back
+/// The position for a ball that left the field at `position`: on the throw-in line, set back
 /// against the team that touched it last, which defends `against`.
 pub(crate) fn throw_in(
     field: &FieldGeometry,
@@ -66,8 +66,8 @@ pub(crate) fn throw_in(
     Vector::new((at + back).clamp(-most.x, most.x), most.y.copysign(position.y))
 }
 
-/// Where a stuck ball is dropped: at the centre, or on a penalty mark when it is stuck there
-/// already.
+/// The position at which a stuck ball is dropped: the centre, or a penalty mark if it is stuck at
+/// the centre.
 pub(crate) fn drop_place(field: &FieldGeometry, ball: Vector, mark: FieldSide) -> Vector {
     if ball.norm() > field.centre_circle_radius {
         return Vector::zeros();
@@ -93,8 +93,8 @@ pub(crate) fn free_for_ball(scene: &WorldView<'_>, wanted: Vector) -> Vector {
     nearest(wanted, limit, is_free)
 }
 
-/// Where a robot returns after a penalty: at the end of the halfway line away from the ball, facing
-/// it.
+/// The pose of a robot that returns after a penalty: at the end of the halfway line away from the
+/// ball, facing it.
 pub(crate) fn return_pose(scene: &WorldView<'_>, robot: usize) -> Pose {
     let side = -1f64.copysign(scene.ball.position.y);
     let wanted = Vector::new(0.0, side * scene.field.half_width());
@@ -138,7 +138,7 @@ pub(crate) fn is_legal_at_kick_off(
         && (state.is_goalie() || !field.in_goal_area(defends, position))
 }
 
-/// Where a penalized robot waits: beside the field, in its own half.
+/// The pose of a penalized robot: beside the field, in its own half.
 pub(crate) fn waiting_pose(field: &FieldGeometry, defends: FieldSide, robot: &RobotState) -> Pose {
     let along = 0.4 + 0.35 * f64::from(robot.number);
     let x = defends.sign() * along.min(field.half_length() + field.border);

@@ -201,7 +201,7 @@ pub fn phase(announced: &Announcement) -> game::GamePhase {
     }
 }
 
-/// What the arbiter of motions needs to know of a body.
+/// The state of a body, for the arbiter of motions.
 pub fn report(sensors: &monas_robot::Sensors) -> BodyReport {
     let posture = match sensors.posture() {
         BodyPosture::Standing | BodyPosture::Walking => Posture::Upright,

@@ -27,7 +27,7 @@ pub struct ImageInterpreter {
     colours: Option<FieldColours>,
 }
 
-/// What images show.
+/// The objects that images show.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Interpretation {
     /// Ball, posts and robots.
@@ -44,7 +44,7 @@ const MOST_POINTS: usize = 32;
 const SAME_POST: f64 = 0.12;
 
 impl ImageInterpreter {
-    /// What images show, with the sensors as they were when the images were taken.
+    /// Finds objects in images, with the sensor values at the time of their exposure.
     ///
     /// # Errors
     /// An image has no possible size or camera, or its bytes are not those of its size.

@@ -239,8 +239,8 @@ impl Perception {
 }
 
 impl PerceptionModel {
-    /// Where the ball crosses the robot's lateral axis, if it is certainly rolling and will pass
-    /// within reach.
+    /// The point at which the ball crosses the robot's lateral axis, if it certainly rolls and will
+    /// pass within reach.
     fn approach(&self, ball: &BallEstimate) -> Option<Crossing> {
         let surely = self.least_speed.max(2.0 * ball.velocity_deviation);
         if -ball.velocity.x < surely {

@@ -50,7 +50,7 @@ impl ColourClass {
     }
 }
 
-/// What a colour table depends on.
+/// The parameters of a colour table.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ColourModel {
     /// Luma of the carpet, from 0 to 255.
@@ -361,7 +361,7 @@ impl Calibration {
         Some((relative_mean, samples))
     }
 
-    /// Where the histogram of chroma, smoothed over 3 x 3 bins, is highest.
+    /// The peak of the histogram of chroma, smoothed over 3 x 3 bins.
     fn peak(&self) -> Option<[f32; 2]> {
         let (mut best, mut at) = (0u32, None);
         for u in 1..BINS - 1 {

@@ -28,7 +28,7 @@ pub struct SampleBox {
 /// takes its place. Boxes of objects give their hues.
 #[derive(Clone, Debug, Default)]
 pub struct ColourSampler {
-    /// What each image shows by itself.
+    /// The estimates of single images.
     estimates: Vec<ColourModel>,
     /// Colours below the horizon of the images.
     ground: Vec<[u8; 3]>,

@@ -1,4 +1,4 @@
-//! What was seen, drawn over its image.
+//! Draws the sightings over their image.
 
 use crate::image::rgb_of_yuv;
 use crate::{GoalPaint, Image, Jersey, PixelBox, Seen};

@@ -1,4 +1,4 @@
-//! What an image shows.
+//! The sightings of an image.
 
 use nalgebra::Point2;
 
@@ -22,7 +22,7 @@ pub struct Sight {
     pub distance: f64,
     /// Direction, rad, positive to the left.
     pub bearing: f64,
-    /// Where it is in the image.
+    /// Its area in the image.
     pub area: PixelBox,
 }
 
@@ -63,7 +63,7 @@ pub enum PostSide {
 /// A post of a goal, at its foot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GoalPost {
-    /// Where it is.
+    /// Its position.
     pub sight: Sight,
     /// The paint of its goal.
     pub paint: GoalPaint,
@@ -85,7 +85,7 @@ pub enum Jersey {
 /// Another robot, at its foot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SeenRobot {
-    /// Where it is.
+    /// Its position.
     pub sight: Sight,
     /// The colour of its jersey.
     pub jersey: Jersey,
@@ -114,7 +114,7 @@ impl LineSegment {
     }
 }
 
-/// What an image shows.
+/// The sightings of an image.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Seen {
     /// The ball.

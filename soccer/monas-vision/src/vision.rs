@@ -80,8 +80,8 @@ impl Vision {
         &self.table
     }
 
-    /// What an image shows that was taken by a camera. Positions are in the frame on the ground in
-    /// which the pose of the camera is given.
+    /// Finds the objects in an image. Positions are in the frame on the ground in which the pose of
+    /// the camera is given.
     ///
     /// # Errors
     /// [`Size`](ErrorKind::Size) if the camera takes images of another size.

@@ -1,4 +1,4 @@
-//! What the cameras of robots see.
+//! The images and sightings of robots' cameras.
 
 use std::time::Duration;
 

@@ -1,4 +1,4 @@
-//! What charts of a run know at present: the guards that they consider, timers and blackboards.
+//! Present values of a run's charts: the guards under consideration, timers and blackboards.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
 

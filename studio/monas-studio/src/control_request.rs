@@ -19,7 +19,7 @@ pub(crate) enum ControlRequest {
     Form { topic: String },
 }
 
-/// What is done to an agent, as the subcommands of `monas agent` and `monas chart raise`.
+/// A change of an agent, as the subcommands of `monas agent` and `monas chart raise`.
 #[derive(Deserialize)]
 #[serde(tag = "action", rename_all = "snake_case", deny_unknown_fields)]
 enum AgentAction {
@@ -81,7 +81,7 @@ impl ControlRequest {
     /// Reads a request of such a type: its number, and the request.
     ///
     /// # Errors
-    /// What is wrong, for people.
+    /// A message for people.
     pub(crate) fn read(value: Value) -> (Option<u64>, Result<ControlRequest, String>) {
         let Value::Object(mut fields) = value else { return (None, Err("not an object".into())) };
         let id = fields.remove("id").and_then(|id| id.as_u64());

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-/// What went wrong.
+/// The kind of an error.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[non_exhaustive]
 pub enum ErrorKind {
@@ -27,7 +27,7 @@ impl Error {
         Error { kind, text: text.to_string() }
     }
 
-    /// What went wrong.
+    /// The kind of the error.
     pub fn kind(&self) -> ErrorKind {
         self.kind
     }

@@ -168,7 +168,7 @@ impl Channels {
     /// Handles a request. Returns whether the subscriptions are others.
     ///
     /// # Errors
-    /// What is wrong, for people.
+    /// A message for people.
     fn handle(&mut self, request: &str) -> Result<bool, String> {
         let request: Value = serde_json::from_str(request).map_err(|error| error.to_string())?;
         let number = |value: &Value| value.as_u64().and_then(|number| u32::try_from(number).ok());

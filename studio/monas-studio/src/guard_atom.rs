@@ -24,7 +24,7 @@ pub struct GuardAtom {
     pub text: String,
     /// Whether it held; none if it is unknown, since a message had not arrived.
     pub value: Option<bool>,
-    /// What it read.
+    /// The values that it read.
     pub reads: Vec<ReadValue>,
 }
 
@@ -150,7 +150,7 @@ fn evaluate(condition: Expression) -> Option<bool> {
     guard.evaluate(&NoNames).ok()
 }
 
-/// What a condition without names can read: functions.
+/// The vocabulary of a condition without names: functions only.
 struct NoNames;
 
 impl EvalContext for NoNames {

@@ -78,7 +78,7 @@ impl HttpRequest {
         words.map(str::trim).any(|known| known.eq_ignore_ascii_case(word))
     }
 
-    /// What decides whether it is answered.
+    /// The headers that decide whether it is answered.
     pub(crate) fn origin(&self) -> RequestOrigin<'_> {
         let parameters = self.query.split('&').filter_map(|parameter| parameter.split_once('='));
         // A second `Host` would leave open which one decides.

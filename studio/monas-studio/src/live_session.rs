@@ -42,7 +42,7 @@ pub(crate) struct LiveSession {
     past: Option<PastMoment>,
     /// Whether the viewer has to forget what it has, since the moment is not a later one.
     is_elsewhere: bool,
-    /// What the viewer has of the ring: its events, its end in seconds.
+    /// The part of the ring that the viewer has: its events, its end in seconds.
     ring: Option<(u64, u64)>,
 }
 

@@ -1,4 +1,4 @@
-//! What all viewers of a run share.
+//! State of a run shared by all viewers.
 
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -18,7 +18,7 @@ pub(crate) struct LiveState {
     pub(crate) allows_control: bool,
     pub(crate) watched_charts: WatchedCharts,
     view: Mutex<RunView>,
-    /// What the run was before. It is locked after the view.
+    /// The recent past of the run. It is locked after the view.
     ring: Mutex<RunRing>,
 }
 

@@ -3,21 +3,21 @@
 use serde::Deserialize;
 use serde_json::{Map, Value};
 
-/// What a page asks of the models that it may edit. A file is given by its number in the list that
-/// the page was sent.
+/// A request of a page about the models that it may edit. A file is given by its number in the list
+/// that the page was sent.
 #[derive(Deserialize, Clone, PartialEq, Debug)]
 #[serde(tag = "type", deny_unknown_fields)]
 pub(crate) enum ModelRequest {
     /// The text of a file.
     #[serde(rename = "model open")]
     Open { file: usize },
-    /// What is understood of a text.
+    /// The structure of a text.
     #[serde(rename = "model outline")]
     Outline { file: usize, text: String },
     /// All findings about a text.
     #[serde(rename = "model check")]
     Check { file: usize, text: String },
-    /// What can be written at a position.
+    /// Completions at a position.
     #[serde(rename = "model complete")]
     Complete { text: String, expression: Option<String>, at: usize },
     /// The replacements that make an edit.
@@ -37,7 +37,7 @@ impl ModelRequest {
     /// Reads a request of such a type: its number, and the request.
     ///
     /// # Errors
-    /// What is wrong, for people.
+    /// A message for people.
     pub(crate) fn read(value: Value) -> (Option<u64>, Result<ModelRequest, String>) {
         let mut fields: Map<String, Value> = match value {
             Value::Object(fields) => fields,

@@ -14,18 +14,18 @@ const ENDINGS: [&str; 8] = ["srm", "sag", "suc", "aip", "ft", "eac", "iac", "stc
 /// The longest file, in bytes: a request has its text with escapes.
 const FILE_LIMIT: u64 = 1 << 19;
 
-/// What models mean. Its replies are read by the page: positions are counted in
+/// The language of models. Its replies are read by the page: positions are counted in
 /// UTF-16 code units, as a page counts them.
 pub trait ModelLanguage: Send + Sync {
-    /// What is understood of a text, however wrong it is: `picture`, `findings`, and `parts`, which
-    /// lists what can be edited.
+    /// The structure of a text, which may have errors: `picture`, `findings`, and `parts`, which
+    /// lists the editable parts.
     fn outline(&self, name: &str, text: &str) -> Value;
 
     /// All findings about a text, as `findings`. It may take long, and ends early when `stop` is
     /// set.
     fn check(&self, name: &str, text: &str, stop: &Arc<AtomicBool>) -> Value;
 
-    /// What can be written at a position of a text, or of an expression of the model: `from`, `to`
+    /// Completions at a position of a text, or of an expression of the model: `from`, `to`
     /// and `entries`.
     fn complete(&self, text: &str, expression: Option<&str>, at: usize) -> Value;
 

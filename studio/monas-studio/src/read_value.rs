@@ -1,4 +1,4 @@
-//! What a condition reads, as the blackboard of its scope had it.
+//! The values that a condition reads, from the blackboard of its scope at that moment.
 
 use monas::records::{Cycle, Delivery};
 use narukom::topic_hash;
@@ -57,7 +57,7 @@ pub(crate) struct ReadMoment<'a> {
 }
 
 impl TapeRun {
-    /// What a condition reads at a moment.
+    /// The values that a condition reads at a moment.
     pub(crate) fn reads(&self, condition: &Expression, moment: &ReadMoment<'_>) -> Vec<ReadValue> {
         let mut paths: Vec<&Path> = Vec::new();
         condition.find_map::<()>(&mut |part| {
@@ -77,7 +77,7 @@ impl TapeRun {
         reads
     }
 
-    /// What a name stands for; none for one of an enumeration, and for a function.
+    /// The value of a name; none for a value of an enumeration, and for a function.
     pub(crate) fn read(&self, path: &Path, moment: &ReadMoment<'_>) -> Option<ReadValue> {
         constant(&moment.chart.statechart, path)
             .or_else(|| timer(path, moment))
@@ -150,8 +150,7 @@ impl TapeRun {
                 channel.topic == CYCLE && channel.host == *host && channel.publisher == *agent
             })
         };
-        // Where the tape is held between a step and the cycle that it belongs to, this cycle
-        // counts.
+        // If the tape is held between a step and the cycle that it belongs to, this cycle counts.
         let (time, is_step) = (moment.time, moment.is_step);
         let is_near =
             move |index: &usize| is_step || self.entry(*index).is_some_and(|(entry, _)| entry.time <= time);

@@ -1,4 +1,4 @@
-//! What is known of a run at one time, and what of it a viewer has not seen yet.
+//! The state of a run at one time, and the changes that a viewer has not seen yet.
 
 use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
@@ -79,7 +79,7 @@ pub(crate) struct RunView {
     table_revision: u64,
 }
 
-/// What a viewer has seen.
+/// The changes that a viewer has seen.
 #[derive(Clone, Default, Debug)]
 pub(crate) struct ViewCursor {
     epoch: Option<u64>,

@@ -1,4 +1,4 @@
-//! What a program draws on the plane: the field of a match, the rooms of a robot.
+//! The interface for programs that draw on the plane: the field of a match, the rooms of a robot.
 
 use std::collections::BTreeMap;
 
@@ -25,7 +25,7 @@ pub trait Scene: Send + Sync {
         None
     }
 
-    /// What the cameras of robots see, if the program has such robots.
+    /// The images of the robots' cameras, if the program has such robots.
     fn cameras(&self) -> Option<&dyn Cameras> {
         None
     }
@@ -34,10 +34,10 @@ pub trait Scene: Send + Sync {
     fn draw(&self, messages: &SceneMessages<'_>) -> ScenePicture;
 }
 
-/// What is marked on a timeline.
+/// An event on a timeline.
 #[derive(Clone, PartialEq, Eq, Default, Debug, Serialize)]
 pub struct SceneEvent {
-    /// What it is, in one word: events of a kind are gone through together.
+    /// Its kind, in one word: one steps through the events of a kind together.
     pub kind: String,
     /// The text.
     pub text: String,
@@ -73,22 +73,22 @@ impl<'a> SceneMessages<'a> {
     }
 }
 
-/// What is on the plane at one time.
+/// The contents of the plane at one time.
 #[derive(Clone, PartialEq, Default, Debug, Serialize)]
 pub struct ScenePicture {
-    /// What does not move.
+    /// Static contents.
     pub ground: Ground,
     /// Robots where they are.
     pub bodies: Vec<Body>,
     /// Other things where they are.
     pub objects: Vec<SceneObject>,
-    /// Where hosts believe that things are.
+    /// Positions as hosts believe them.
     pub beliefs: Vec<Belief>,
-    /// Where hosts see lines on the ground.
+    /// Lines on the ground as hosts see them.
     pub seen_lines: Vec<SeenLine>,
-    /// What is said above the plane.
+    /// The text above the plane.
     pub banner: Option<Banner>,
-    /// What viewers can do that may change the run.
+    /// Actions of viewers that may change the run.
     pub actions: Vec<SceneAction>,
 }
 
@@ -175,7 +175,7 @@ pub struct Body {
 /// A ball or another thing.
 #[derive(Clone, PartialEq, Default, Debug, Serialize)]
 pub struct SceneObject {
-    /// What it is: `ball`.
+    /// Its kind: `ball`.
     pub kind: String,
     /// Its place, m.
     pub x: f64,
@@ -189,12 +189,12 @@ pub struct SceneObject {
     pub radius: f64,
 }
 
-/// Where a host believes that it, or something, is.
+/// The believed position of a host or of an object.
 #[derive(Clone, PartialEq, Default, Debug, Serialize)]
 pub struct Belief {
     /// The host.
     pub host: String,
-    /// What is believed: `self` or the kind of an object.
+    /// The subject: `self` or the kind of an object.
     pub kind: String,
     /// Its place, m.
     pub x: f64,

@@ -40,7 +40,7 @@ const fn colour(r: f64, g: f64, b: f64) -> Color {
     Color { r, g, b, a: 1.0 }
 }
 
-/// What a client has of the scene.
+/// The scene as a client has it.
 #[derive(Clone, Default, Debug)]
 pub(crate) struct SceneHistory {
     entities: BTreeSet<String>,
@@ -48,7 +48,7 @@ pub(crate) struct SceneHistory {
 }
 
 impl SceneHistory {
-    /// What changes the scene that the client has to a picture, at a time in nanoseconds.
+    /// The changes from the client's scene to a picture, at a time in nanoseconds.
     pub(crate) fn update(&mut self, picture: &ScenePicture, time: u64) -> SceneUpdate {
         let mut entities: Vec<SceneEntity> = Vec::new();
         entities.extend(picture.bodies.iter().map(body));

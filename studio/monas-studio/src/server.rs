@@ -69,7 +69,7 @@ pub struct StudioSettings {
     /// The address; the first free port from 4810 on of loopback if not given. For any other
     /// address than loopback the page needs a token.
     pub listen: Option<ListenAddress>,
-    /// What is drawn from above; of a tape, what the tape was opened with.
+    /// The view from above; for a tape, the one with which it was opened.
     pub scene: Option<Arc<dyn Scene>>,
     /// The pace of simulated time, if viewers may set it.
     pub pace: Option<Pace>,

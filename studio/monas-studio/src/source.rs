@@ -1,4 +1,4 @@
-//! Where a studio has its view from.
+//! The sources of a studio's view.
 
 #[cfg(unix)]
 use std::sync::Arc;
@@ -32,6 +32,6 @@ pub(crate) trait Session: Send {
     /// Handles a request. Returns the reply, if it has one.
     fn handle(&mut self, request: ViewerRequest) -> Option<Value>;
 
-    /// What the viewer has not seen; `elapsed` is the time since the last call.
+    /// The changes that the viewer has not seen; `elapsed` is the time since the last call.
     fn frame(&mut self, elapsed: Duration) -> Option<Value>;
 }

@@ -1,4 +1,4 @@
-//! Where two recordings of a run part, and how each ends.
+//! Comparison of two recordings of a run: their first difference, and how each ends.
 
 use std::collections::BTreeMap;
 
@@ -68,7 +68,7 @@ fn collect(path: &str, first: &Value, second: &Value, fields: &mut Vec<(String, 
 pub struct TapeEvent {
     /// When it was, s.
     pub time: f64,
-    /// What it is, in one word.
+    /// Its kind, in one word.
     pub kind: String,
     /// The text.
     pub text: String,
@@ -124,7 +124,7 @@ impl TapeRun {
         (0..self.len()).filter_map(key).collect()
     }
 
-    /// What the scene says above the plane at a time in seconds: the score of a match.
+    /// The scene's text above the plane at a time in seconds: the score of a match.
     pub fn banner_at(&self, time: f64) -> Option<Banner> {
         let count = self.count_until((time * 1e9).max(0.0) as u64);
         let mut moment = self.moment_before(count).clone();

@@ -10,7 +10,7 @@ use crate::tape_session::TapeSession;
 pub(crate) struct TapePair {
     tape: TapeRun,
     other: TapeRun,
-    /// What is marked on the timeline: the events of the first, and where both part.
+    /// Events on the timeline: those of the first tape, and the first difference.
     events: Vec<Value>,
 }
 

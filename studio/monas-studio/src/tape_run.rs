@@ -72,7 +72,7 @@ struct TapeIndex {
     channels: Vec<TapeChannel>,
     entries: Vec<TapeEntry>,
     decoder: MessageDecoder,
-    /// What is marked on the timeline.
+    /// Events on the timeline.
     events: Vec<Value>,
     /// After each [`INTERVAL`] messages.
     moments: Vec<TapeMoment>,
@@ -107,7 +107,7 @@ impl TapeRun {
         let recording = index.recording.clone();
         for item in recording.contents().map_err(failed)? {
             let RecordingItem::Message(message) = item.map_err(failed)? else { continue };
-            // What a host received from another is shown where it was published.
+            // A message received from another host is shown where it was published.
             if message.channel.received_by.is_some() {
                 continue;
             }

@@ -45,7 +45,7 @@ pub(crate) struct TapeSession {
     values: Option<String>,
     /// The moment of the values that were sent last: the number of messages, and the time.
     sent_values: Option<(usize, u64)>,
-    /// What is marked on the timeline.
+    /// Events on the timeline.
     events: Vec<Value>,
     other: Option<OtherMoment>,
 }

@@ -1,4 +1,4 @@
-//! What a chart knew at a moment of a tape: guards, timers and blackboards.
+//! Values of a chart at a moment of a tape: guards, timers and blackboards.
 
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -15,7 +15,7 @@ use crate::read_value::ReadMoment;
 use crate::run_view::MODEL;
 use crate::tape_run::{TapeChart, TapeRun};
 
-/// What is asked about a transition.
+/// A question about a transition.
 #[derive(Clone, PartialEq, Debug)]
 pub struct TransitionQuestion<'a> {
     /// The host.
@@ -57,7 +57,7 @@ pub struct TransitionExplanation {
     pub target: String,
     /// Its expression.
     pub text: String,
-    /// What happened.
+    /// The result.
     pub verdict: Verdict,
     /// The same in words.
     pub reason: String,
@@ -67,7 +67,7 @@ pub struct TransitionExplanation {
     pub fired: Option<f64>,
     /// When it fires next, s.
     pub next: Option<f64>,
-    /// What triggers it.
+    /// Its triggers.
     pub triggers: Vec<TriggerArrival>,
     /// Whether its guard held; none without a guard, and if that is unknown.
     pub guard: Option<bool>,
@@ -242,7 +242,7 @@ impl TapeRun {
     }
 }
 
-/// What happened to a transition, and the step that decided it; without a step it is not decided.
+/// The result for a transition, and the step that decided it; without a step it is undecided.
 fn verdict(chart: &Statechart, steps: &[RecordedStep], id: TransitionId) -> (Verdict, Option<usize>) {
     let source = chart.transition(id).source;
     let fired = steps.iter().rposition(|step| step.has_fired(id));

@@ -116,8 +116,8 @@ pub(crate) fn refuse(stream: TcpStream, reason: &str) {
 fn close(socket: &mut WebSocket<TcpStream>, code: CloseCode, reason: &str) -> tungstenite::Result<()> {
     socket.close(Some(CloseFrame { code, reason: reason.into() }))?;
     socket.flush()?;
-    // What the page has sent is read, or else the system resets the connection, and the page may
-    // lose the reason. At its reply the socket reports that it is closed.
+    // Read the remaining data of the page, or else the system resets the connection, and the page
+    // may lose the reason. At its reply the socket reports that it is closed.
     let deadline = now() + FAREWELL;
     while now() < deadline {
         next_request(socket, deadline.saturating_duration_since(now()))?;

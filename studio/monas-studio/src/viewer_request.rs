@@ -1,4 +1,4 @@
-//! What a page asks for.
+//! The requests of a page.
 
 use serde_json::Value;
 

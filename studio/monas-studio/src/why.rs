@@ -15,7 +15,7 @@ use crate::run_view::MODEL;
 use crate::tape_run::{TapeChart, TapeRun};
 use crate::transition_explanation::is_connector;
 
-/// What is asked of a tape.
+/// A question about a tape.
 #[derive(Clone, PartialEq, Debug)]
 pub struct WhyQuestion<'a> {
     /// The host.
@@ -59,7 +59,7 @@ pub struct TakenSegment {
     pub target: String,
     /// Its expression.
     pub text: String,
-    /// What its condition read.
+    /// The values that its condition read.
     pub reads: Vec<ReadValue>,
 }
 

@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use monas_tests::{BallKnowledge, TODAY};
 
-/// What is played: a name, settings, and the width of the images of the robot that is watched.
+/// The matches: a name, settings, and the width of the images of the watched robot.
 const MATCHES: [(&str, &[&str], Option<u32>); 6] = [
     ("today, finished sightings", &TODAY, None),
     ("today, images of 320 by 240", &TODAY, Some(320)),

@@ -76,7 +76,7 @@ impl Run {
         })
     }
 
-    /// Where the attacker believes itself and the ball on the field, which it attacks along x: x
+    /// The attacker's belief about itself and the ball on the field, which it attacks along x: x
     /// and y, m, heading, rad, and x and y of the ball.
     fn scene(&self) -> [f64; 5] {
         let (pose, ball) = (self.blackboard.read(POSE).unwrap(), self.blackboard.read(BALL).unwrap());
@@ -193,7 +193,7 @@ fn scores(configuration: &str, variable: &str) {
 /// Shots, and how many of them a goalie has to save.
 const SHOTS: u32 = 10;
 const SAVED: u32 = 7;
-/// Where the ball lies before a shot, m: ahead, and at most to a side.
+/// The position of the ball before a shot, m: ahead, and at most to a side.
 const SHOT: (f64, f64) = (-20.5, 0.7);
 /// The speed of a shot, m/s: it slows down to about 1 m/s at the goal line.
 const SPEED: f64 = 4.1;

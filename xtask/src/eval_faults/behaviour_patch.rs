@@ -53,7 +53,7 @@ pub(crate) enum Edit {
 #[derive(Default)]
 pub(crate) struct BehaviourPatch {
     pub(crate) name: String,
-    /// What is wrong.
+    /// A description of the fault.
     pub(crate) prose: String,
     /// Its class, which names it in tables.
     pub(crate) class: String,

@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 use super::behaviour_patch::{BehaviourPatch, Methodology};
 use crate::faults::copy::WorkspaceCopy;
 
-/// What finds a fault.
+/// A check that can find a fault.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum Finder {
     /// An error or a warning of the compiler.
@@ -51,7 +51,7 @@ impl Finder {
     }
 }
 
-/// What has found a fault, and how.
+/// The check that has found a fault, and its message.
 pub(crate) struct Finding {
     pub(crate) finder: Finder,
     pub(crate) evidence: String,

@@ -1,6 +1,6 @@
-//! What crates may still exceed. An allowance may only shrink: tidy asks to lower one that is
-//! larger than what is counted, and `cargo xtask tidy --allowances` prints the table as it would be
-//! today.
+//! The limits that crates may still exceed. An allowance may only shrink: tidy asks to lower one
+//! that is larger than what is counted, and `cargo xtask tidy --allowances` prints the table as it
+//! would be today.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -27,7 +27,7 @@ pub(crate) enum Check {
     Circle,
 }
 
-/// What one crate or folder has of one check.
+/// The count of one check in one crate or folder.
 pub(crate) struct Measure {
     /// A crate, or the top folder of a file that belongs to none.
     pub(crate) owner: String,
@@ -35,7 +35,7 @@ pub(crate) struct Measure {
     pub(crate) count: usize,
     /// The count that needs no allowance.
     pub(crate) limit: usize,
-    /// What to report if the count is too large.
+    /// The findings to report if the count is too large.
     pub(crate) findings: Vec<TidyFinding>,
 }
 

@@ -209,7 +209,7 @@ impl RegionPacking {
         RegionPacking { rows, size: (width, height), is_column }
     }
 
-    /// What is to be small: the longer side, of equals the shorter.
+    /// The size to minimize: the longer side, of equals the shorter.
     fn extent(&self) -> f64 {
         let (longer, shorter) = (self.size.0.max(self.size.1), self.size.0.min(self.size.1));
         longer + shorter / 1000.0

@@ -50,7 +50,7 @@ pub(crate) fn across_borders(chart: &Statechart, layout: &mut DrawingLayout) {
     }
 }
 
-/// What is on the page.
+/// The obstacles and routes on the page.
 struct Router {
     /// By node: where arrows begin and end.
     boxes: Vec<Rectangle>,

@@ -12,7 +12,7 @@ use super::transitions::ResolvedTransition;
 use yase::expression::{Action, ActionKind, ExpressionKind, TransitionExpression, Trigger};
 use yase::statechart::{NodeId, NodeKind, Statechart, Transition};
 
-/// Where a timer starts.
+/// The element at which a timer starts.
 enum TimerStart<'a> {
     Entry(NodeId),
     Exit,

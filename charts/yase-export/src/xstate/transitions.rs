@@ -24,7 +24,7 @@ pub(crate) struct ResolvedTransition<'a> {
     pub(crate) targets: Vec<NodeId>,
 }
 
-/// What a path does at a node.
+/// The role of a connector in a path.
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) enum ConnectorRole {
     /// It continues over one of the segments.

@@ -1,4 +1,4 @@
-//! What is left out of compact drawings, and what makes drawings small and plain.
+//! The contents of compact drawings, and the rules that make drawings small and plain.
 
 use yase::{NodeKind, Statechart};
 use yase_export::notation::kind_word;
@@ -93,7 +93,7 @@ fn boxes_around_boxes_and_ways_never_taken_are_left_out() {
     assert!(size(&to_svg(&compact)) < 0.6 * size(&to_svg(&chart("c", WRAPPED))));
 }
 
-/// What a wrapper says of its own keeps it.
+/// A wrapper with expressions of its own is kept.
 #[test]
 fn boxes_with_something_of_their_own_stay() {
     for (from, to) in [

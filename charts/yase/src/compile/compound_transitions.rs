@@ -57,7 +57,7 @@ pub(crate) struct PathArrival {
     pub(crate) passes: bool,
 }
 
-/// Where a path ends, or continues after its actions.
+/// The end of a path, or its continuation after its actions.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum PathEnd {
     /// A state, or a HISTORY.
@@ -246,8 +246,8 @@ impl CompoundPathSearch<'_> {
     }
 
     /// The path through a JOIN as one transition: it belongs to its first source in document order.
-    /// Where completion is examined once, it is examined when the last of the sources completes,
-    /// whichever that is.
+    /// If completion is examined once, it is examined when the last of the sources completes, in
+    /// any order.
     fn path_through_join(&mut self, state: NodeId, node: NodeId, join: usize, ways: &mut Vec<CompoundPath>) {
         let mut sources = self.joins[join].sources.clone();
         sources.sort_by_key(|&source| self.layout.rank(self.layout.place_of(source)));

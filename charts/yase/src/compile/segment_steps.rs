@@ -1,4 +1,4 @@
-//! What a path does segment by segment.
+//! The effects of a path, segment by segment.
 //!
 //! A segment leaves the states up to the boundary that it crosses, and enters those around its
 //! target. The boundary is the scope of the segment: the lowest OR around both its ends, or the

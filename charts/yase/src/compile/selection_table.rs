@@ -123,7 +123,7 @@ fn alternatives(range: BranchRange, branches: &[SegmentNode]) -> impl Iterator<I
 /// The nodes with transitions without a trigger that may ever be taken. One with the guard
 /// `[false]` never is; one with a weight is kept, since it takes part in random choices.
 ///
-/// Where completion triggers once, only a START is examined at other times than on its completion.
+/// If completion triggers once, only a START is examined at other times than on its completion.
 pub(super) fn eventless_nodes(
     states: &[CompiledNode],
     branches: &[SegmentNode],

@@ -1,6 +1,6 @@
 //! Entering states.
 //!
-//! Where a transition has one target and passes no START, the list of entered nodes is precomputed.
+//! If a transition has one target and passes no START, the list of entered nodes is precomputed.
 //! Otherwise the targets are marked with all their ancestors up to the scope, and entry follows the
 //! marks down from the scope.
 

@@ -161,7 +161,7 @@ impl StateNames {
     }
 }
 
-/// What stands between the ends of a transition.
+/// The separator between the ends of a transition.
 const ARROW: &str = " -> ";
 
 /// The nodes of a chart, known by their paths.
@@ -310,7 +310,7 @@ impl PathTree {
         Some(chain)
     }
 
-    /// What each node adds to the name of the one around it.
+    /// The part that each node adds to the name of the one around it.
     fn labels(&self) -> Vec<String> {
         let mut counts = vec![0; self.segments.len()];
         let label = |(index, segment): (usize, &String)| {

@@ -50,7 +50,7 @@ pub struct BudgetUsage {
 /// The packets of the last window. The budgeted number of packets is remembered, and the oldest
 /// determines when the next may be sent, so no window ever contains more.
 ///
-/// What an earlier incarnation of this host has sent is unknown, so the link waits for the first
+/// The data sent by an earlier incarnation of this host is unknown, so the link waits for the first
 /// window to pass.
 #[derive(Debug)]
 pub(crate) struct BudgetWindow {

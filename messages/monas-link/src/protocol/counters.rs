@@ -1,6 +1,6 @@
 //! Counters per topic. They satisfy the documented equations, which the tests of this crate check.
 
-/// What a link has sent of a topic.
+/// Counts of the messages of a topic that a link has sent.
 ///
 /// `taken == sent + dropped + oversize + waiting`: each message taken from the hub was sent, was
 /// dropped, or waits.
@@ -24,7 +24,7 @@ pub struct SentCounters {
     pub bytes: u64,
 }
 
-/// What a link has received of a topic of a host, since the host's link was last started.
+/// Counts of the messages received of a topic of a host, since the host's link was last started.
 ///
 /// `arrived == delivered + duplicates + late + refused + held`, and
 /// `last - start == delivered + gaps + held + missing`: each message from the first one on was

@@ -45,7 +45,7 @@ pub struct Network {
     flying: BTreeMap<(u64, u64), (usize, Packet)>,
     flown: u64,
     random: Random,
-    /// What each node published on each topic, in its current incarnation.
+    /// The messages of each node on each topic, in its current incarnation.
     pub published: Vec<Vec<u64>>,
 }
 

@@ -111,7 +111,7 @@ fn messages_during_an_outage_arrive_later_or_are_counted_as_a_gap() {
     second.stop();
 }
 
-/// What a faulty transport has done.
+/// The actions of a faulty transport.
 #[derive(Default)]
 struct Done {
     doubled: AtomicU64,

@@ -56,7 +56,7 @@ fn everything() -> LinkSettings {
 struct End {
     hub: Hub,
     link: Link,
-    /// What its clock showed at `start`.
+    /// The time of its clock at `start`.
     began: Timestamp,
     start: Instant,
 }

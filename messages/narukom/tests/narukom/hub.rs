@@ -142,7 +142,7 @@ fn patterns_that_fit_nothing_are_errors() {
     assert_eq!(hub().subscriber("Test").unwrap_err().kind(), ErrorKind::BadPath);
 }
 
-/// What an observer noted: publisher, path and number of each message.
+/// Notes of an observer: publisher, path and number of each message.
 type Notes = Arc<Mutex<Vec<(String, &'static str, u64)>>>;
 
 fn note(hub: &Hub) -> Notes {

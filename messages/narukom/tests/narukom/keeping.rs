@@ -180,7 +180,7 @@ fn own_messages_that_wait_do_not_exceed_what_a_topic_keeps() {
     let recent: Vec<u64> = robot.recent(DATA, Duration::from_secs(1)).map(|mark| mark.number).collect();
     assert_eq!(recent, kept);
     assert_eq!(robot.nearest_not_older(DATA, Timestamp::ZERO).unwrap().number, 3);
-    // What a region took over counts too, and messages that it hides do not.
+    // Messages that a region took over count too, and messages that it hides do not.
     let mut region = hub.blackboard("region");
     region.publish(DATA, Mark::new(99)).unwrap();
     region.adopt(&robot);

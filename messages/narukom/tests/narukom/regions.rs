@@ -1,4 +1,4 @@
-//! What the runtime of statecharts needs: edits, and regions that take over values.
+//! Functions for the runtime of statecharts: edits, and regions that take over values.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on fails")]
 
 use crate::messages::*;

@@ -80,7 +80,7 @@ impl Model {
         }
     }
 
-    /// What a reader sees, oldest first.
+    /// The messages that a reader sees, oldest first.
     fn visible(&self, reader: usize, host: usize, aged: bool) -> Vec<Arrival> {
         let now = self.now[reader];
         let is_fresh = |published: u64| !aged || now.saturating_sub(published) <= AGE;

@@ -20,7 +20,8 @@ const MOST_STATES: usize = 1_000;
 pub struct WrittenModel {
     /// The text.
     pub text: String,
-    /// What the format cannot represent, with positions in the file that was read (E0620, E0850).
+    /// Parts that the format cannot represent, with positions in the file that was read (E0620,
+    /// E0850).
     pub lost: Vec<Diagnostic>,
 }
 

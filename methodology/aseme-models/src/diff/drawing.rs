@@ -13,7 +13,7 @@ use super::{ChangeKind, ChartDifference};
 pub struct DiffDrawing {
     /// The chart, for drawing only.
     pub chart: Statechart,
-    /// What was added, removed or changed.
+    /// The added, removed and changed elements.
     pub marks: Highlights,
 }
 

@@ -76,7 +76,7 @@ impl<'a> ChartText<'a> {
         ChartText { source, document, chart, nodes, transitions }
     }
 
-    /// Where a node stands.
+    /// The position of a node in the text.
     pub(crate) fn state_span(&self, node: usize) -> Span {
         self.nodes.get(node).map(|lines| lines.content.span).unwrap_or_default()
     }
@@ -94,7 +94,7 @@ impl<'a> ChartText<'a> {
         settings.iter().map(|(key, value)| (key.text.clone(), plain(value))).collect()
     }
 
-    /// Where each transition stands, with its expression and modifiers.
+    /// The position of each transition in the text, with its expression and modifiers.
     pub(crate) fn transition_texts(&self) -> impl Iterator<Item = (Span, String, String)> {
         self.transitions.iter().map(|line| {
             let TransitionLine { modifiers, expression, .. } = &line.parts;

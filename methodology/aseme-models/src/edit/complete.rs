@@ -1,4 +1,4 @@
-//! What can be written at a position of a model's text.
+//! Completions at a position of a model's text.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -27,22 +27,22 @@ pub struct ProgramNames<'a> {
 pub struct Completion {
     /// The text.
     pub text: String,
-    /// What it is: `message`, `field`, `function`, `activity`, `state` and others.
+    /// Its kind: `message`, `field`, `function`, `activity`, `state` and others.
     pub kind: &'static str,
     /// More about it, such as a type.
     pub detail: String,
 }
 
-/// What can be written at a position.
+/// The completions at a position.
 #[derive(Clone, PartialEq, Eq, Debug, Default)]
 pub struct Completions {
     /// The word before the position, which is replaced.
     pub word: Span,
-    /// What can be written, in order; not filtered by the word.
+    /// The completions, in order; not filtered by the word.
     pub entries: Vec<Completion>,
 }
 
-/// What can be written at a position of a model's text.
+/// The completions at a position of a model's text.
 pub fn completions(source: &str, at: usize, names: ProgramNames<'_>) -> Completions {
     let at = floor_boundary(source, at);
     let blanked = text::without_comments(source);
@@ -59,7 +59,7 @@ pub fn completions(source: &str, at: usize, names: ProgramNames<'_>) -> Completi
     words.at(&blanked, at)
 }
 
-/// What can be written at a position of an expression of a model.
+/// The completions at a position of an expression of a model.
 pub fn expression_completions(
     source: &str,
     expression: &str,

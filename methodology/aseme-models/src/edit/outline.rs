@@ -1,4 +1,4 @@
-//! What of a model's text can be edited, and where it stands.
+//! The editable parts of a model's text, with their positions.
 
 use aseme::SrmFile;
 use aseme::srm::{Section, StateEntry};
@@ -13,7 +13,7 @@ use super::{TextForm, form};
 use crate::document::{Reference, list, reference, settings};
 use crate::meta::{Class, Feature, FeatureKind, MANY, Metamodel};
 
-/// What of a model's text can be edited.
+/// The editable parts of a model's text.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub enum ModelOutline {
     /// A role: the states of its formulas, its transitions, its entries.
@@ -46,7 +46,7 @@ pub enum ModelOutline {
 /// A state or connector.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub struct StateOutline {
-    /// Where it stands: in a formula, or on its line.
+    /// Its position: in a formula, or on its line.
     pub span: Span,
     /// Its settings.
     pub settings: Vec<(String, String)>,
@@ -55,7 +55,7 @@ pub struct StateOutline {
 /// A transition.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub struct TransitionOutline {
-    /// Where its entry stands; of a role `None` if its formulas alone make it.
+    /// The position of its entry; of a role `None` if its formulas alone make it.
     pub span: Option<Span>,
     /// The expression as it is written.
     pub expression: String,
@@ -70,7 +70,7 @@ pub struct TransitionOutline {
 pub struct EntryOutline {
     /// The word of its section.
     pub section: &'static str,
-    /// Where it stands.
+    /// Its position.
     pub span: Span,
 }
 
@@ -79,7 +79,7 @@ pub struct EntryOutline {
 pub struct ClassOutline {
     /// Its header.
     pub word: &'static str,
-    /// What the name in its header is.
+    /// The meaning of the name in its header.
     pub title: &'static str,
     /// Its fields besides the name.
     pub fields: Vec<FieldOutline>,
@@ -90,11 +90,11 @@ pub struct ClassOutline {
 pub struct FieldOutline {
     /// Its key.
     pub key: &'static str,
-    /// What it holds.
+    /// The kind of its value.
     pub kind: FieldKind,
 }
 
-/// What a field holds.
+/// The kind of a field's value.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub enum FieldKind {
     /// A text.
@@ -118,13 +118,13 @@ pub struct ItemOutline {
     pub name: String,
     /// How others refer to it.
     pub reference: String,
-    /// Where its header stands.
+    /// The position of its header.
     pub span: Span,
     /// Its fields with their values; of links each reference.
     pub fields: Vec<(&'static str, Vec<String>)>,
 }
 
-/// What of a text can be edited. The text may be wrong: what is understood is listed.
+/// The editable parts of a text, as far as it can be parsed.
 pub fn outline(source: &str) -> ModelOutline {
     match form(source) {
         TextForm::Role => role(source),

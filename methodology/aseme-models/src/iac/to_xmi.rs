@@ -29,7 +29,7 @@ impl Iac {
         })
     }
 
-    /// What a dialect cannot represent (E0850).
+    /// Parts of the model that a dialect cannot represent (E0850).
     pub fn lost_in_xmi(&self, dialect: Dialect) -> Vec<Diagnostic> {
         let mut lost = LossReport { dialect, found: Vec::new() };
         lost.model(self);

@@ -48,7 +48,7 @@ fn paths<'f>(file: &'f SrmFile, entry: &SrmEntry) -> Vec<&'f Path> {
     paths
 }
 
-/// What a composite is called now, if exactly one fits: of the same operators, with more names in
+/// The new name of a composite, if exactly one fits: of the same operators, with more names in
 /// common than not.
 fn new_name<'c>(old: &str, chart: &'c Statechart) -> Option<&'c str> {
     let (outline, names) = (outline(old), leaves(old));

@@ -93,7 +93,7 @@ impl SystemRoles {
         Ok((text, lost))
     }
 
-    /// What a derived model lacks.
+    /// Parts of the role that a derived model lacks.
     fn lost_to(&self, derived: &SystemRoles) -> Vec<Diagnostic> {
         let mut lost = Vec::new();
         let mut add = |place: TextPosition, what: String| {

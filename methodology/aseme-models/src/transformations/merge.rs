@@ -154,7 +154,8 @@ impl ChartMerge<'_> {
         self.diagnostics.push(Diagnostic::error("E0835", span, message).with_hint(hint));
     }
 
-    /// What the protocol asks of those who engage in a part, wherever the role does.
+    /// Adds the protocol's rule for engaging in a part to each transition of the role that leads
+    /// there.
     fn ways_in(&mut self, borders: &Borders<'_>, place: usize) {
         let Some(rule) = borders.rule else { return };
         let mut is_guarded = false;
@@ -231,7 +232,7 @@ impl ChartMerge<'_> {
     }
 }
 
-/// What a protocol says at the borders of a part.
+/// The transitions of a protocol into and out of a part.
 struct Borders<'a> {
     rule: Option<&'a IacTransition>,
     exits: Vec<&'a IacTransition>,

@@ -1,4 +1,4 @@
-//! What differs between two charts.
+//! Differences between two charts.
 
 use aseme_models::diff::{diff, picture};
 use aseme_models::statechart_of;

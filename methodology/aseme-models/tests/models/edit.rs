@@ -434,7 +434,7 @@ proptest! {
                 let (begin, end) = (start, start + line.len());
                 start = end;
                 let touches = |span: yase::Span| span.start < end && span.end >= begin;
-                // What is inserted at the end of a text without a last line break may continue that
+                // A text inserted at the end of a text without a last line break may continue that
                 // line.
                 let follows = |edit: &TextEdit| {
                     edit.span.start == end && (line.ends_with('\n') || !edit.text.starts_with('\n'))

@@ -235,7 +235,7 @@ fn formulas_in_a_model_are_judged_where_they_stand() {
     assert_eq!(findings.iter().map(|it| it.code).collect::<Vec<_>>(), ["E0219"]);
 }
 
-/// What cannot be run yet can be looked at.
+/// A chart that cannot run yet can be drawn.
 #[test]
 fn charts_with_unfinished_expressions_are_drawn() {
     let chart = "IAC: m\n\nStates:\n  m OR\n    START\n    A BASIC\n    END\n\nTransitions:\n  START -> A\n  A -> A : [y g 0`]/timeout\n  A -> END : [x]\n";

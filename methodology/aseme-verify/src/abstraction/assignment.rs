@@ -11,7 +11,7 @@ pub(crate) struct Assignment {
 }
 
 impl Assignment {
-    /// What is so once it was executed, if its value does not depend on anything.
+    /// The fact that holds after its execution, if its value does not depend on anything.
     pub(crate) fn fact(&self, constants: &[Constant]) -> Option<Expression> {
         let is_constant = |part: &Expression| match &part.kind {
             ExpressionKind::Variable(path) => path.bare().is_none().then_some(()),
@@ -56,7 +56,7 @@ fn equation(target: Expression, value: &Expression, constants: &[Constant]) -> E
     Expression { kind, place }
 }
 
-/// What a constant condition is.
+/// The value of a constant condition.
 fn truth(value: &Expression, constants: &[Constant]) -> Option<bool> {
     match &value.kind {
         ExpressionKind::Bool(value) => Some(*value),

@@ -22,7 +22,7 @@ use yase::{Diagnostic, NodeId, NodeKind, TransitionId};
 use crate::checked_model::CheckedModel;
 use crate::program_symbols::ProgramSymbols;
 
-/// What is known of the moment in which a place is reached.
+/// A way in which a node is reached: from the last state that waited.
 #[derive(Clone, Debug)]
 struct Moment<'a> {
     /// The state whose activity ended, the last that waits.
@@ -170,8 +170,8 @@ impl<'a> MomentSearch<'a> {
         }
     }
 
-    /// What is reached by a completion of a node: the targets of its transitions, the beginning of
-    /// a composite, the composite whose END it is.
+    /// The nodes reached by a completion of a node: the targets of its transitions, the beginning
+    /// of a composite, the composite whose END it is.
     fn next(&self, node: NodeId) -> Vec<NodeId> {
         let chart = &self.subject.chart;
         let here = chart.node(node);

@@ -283,7 +283,7 @@ fn literal(value: &Expression, constants: &[Constant]) -> Option<String> {
     }
 }
 
-/// Where the agent of a robot runs, and beside which others.
+/// The hosts of the robots, and the messages of other agents on the robot's own host.
 pub(crate) struct Neighbourhood<'a> {
     pub(crate) host: &'a str,
     /// The hosts of all robots.
@@ -292,7 +292,7 @@ pub(crate) struct Neighbourhood<'a> {
     pub(crate) beside: Vec<MessageName>,
 }
 
-/// What a chart's paths may be about: messages of robots, itself among them.
+/// The messages that concern a chart: those of robots, itself among them.
 struct MessageFilter<'a> {
     neighbourhood: Neighbourhood<'a>,
     /// The messages that its actions send.

@@ -94,7 +94,7 @@ fn is_only_route(product: &GlobalProduct<'_>, robot: usize, number: usize) -> bo
     others.into_iter().all(|(_, route)| route.received_messages.iter().all(|it| !received.contains(it)))
 }
 
-/// What a robot calls the message of a route.
+/// The robot's names for the message of a route.
 fn prefixes(robot: &ComposedRobot, route: &MessageRoute) -> impl Iterator<Item = Path> {
     let received = route.received_messages.iter();
     received.map(|&it| robot.received[it].called.prefix.clone()).collect::<Vec<_>>().into_iter()

@@ -95,7 +95,7 @@ impl<'a> ContentTable<'a> {
         facts
     }
 
-    /// What is known of a message that a robot hears, by its content.
+    /// The facts about a message that a robot receives, by its content.
     pub(crate) fn facts_of(&self, prefix: &Path, content: u32) -> Vec<Expression> {
         let mut facts = Vec::new();
         self.add_facts(prefix, content, &mut facts);

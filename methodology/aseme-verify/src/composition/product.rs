@@ -358,12 +358,12 @@ impl GlobalProduct<'_> {
         self.open_ended.is_empty() && self.behaviours.iter().all(|it| it.found.is_finished())
     }
 
-    /// What happens on the shortest way to a state.
+    /// The events on the shortest path to a state.
     pub(crate) fn path_to(&self, state: usize) -> Vec<GlobalEvent> {
         self.steps_to(state).into_iter().map(|(by, _)| by).collect()
     }
 
-    /// What happens on the shortest way to a state, and to which states that leads.
+    /// The events on the shortest path to a state, each with the state that it leads to.
     pub(crate) fn steps_to(&self, mut state: usize) -> Vec<(GlobalEvent, usize)> {
         let mut way = Vec::new();
         while let Some(Some((before, by))) = self.predecessor.get(state) {

@@ -316,7 +316,7 @@ impl Language {
         letters
     }
 
-    /// What is left when an activity has returned; nothing if it may not.
+    /// The residuals after an activity has returned; empty if it may not return.
     pub(crate) fn derivative(&mut self, rest: Residual, letter: Symbol) -> BTreeSet<Residual> {
         if let Some(known) = self.derivatives.get(&(rest, letter)) {
             return known.clone();

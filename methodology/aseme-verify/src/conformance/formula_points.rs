@@ -1,4 +1,4 @@
-//! What a chart does at each point of its formulas.
+//! The behaviour of a chart at each point of its formulas.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -19,7 +19,7 @@ pub(crate) type TraceId = usize;
 pub(crate) struct FormulaPoint {
     /// The first trace that leads there.
     before: Option<TraceId>,
-    /// What may follow, `None` being the end, and whether it does after some trace.
+    /// The symbols that may follow, `None` being the end, and whether each does after some trace.
     follows: BTreeMap<Option<Symbol>, bool>,
 }
 

@@ -18,7 +18,7 @@ pub(crate) struct LabelledEdge {
     pub(crate) edge: usize,
 }
 
-/// What a trace shows of a step.
+/// The observable effect of a step in a trace.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
 pub(crate) enum Observable {
     /// No activity returned.

@@ -25,7 +25,7 @@ pub(crate) struct GuardModel {
     pub(crate) flags: BTreeMap<String, bool>,
     /// Texts and values of enumerations.
     pub(crate) symbols: BTreeMap<String, String>,
-    /// What names are not.
+    /// Pairs of a name and a value that are known to differ.
     pub(crate) differs: BTreeSet<(String, String)>,
     pub(crate) numbers: BTreeMap<String, f64>,
     /// The messages that have not arrived.
@@ -47,7 +47,7 @@ struct Assumptions {
 /// A choice whose alternatives are tried one after the other.
 #[derive(Clone)]
 struct Branch<'f> {
-    /// What was assumed before it.
+    /// The assumptions before it.
     facts: Assumptions,
     /// The last of the choices that remain beside it.
     last_choice: Option<usize>,

@@ -394,7 +394,7 @@ impl CycleSearch<'_> {
     }
 }
 
-/// What a cycle must visit.
+/// A state that a cycle must visit.
 enum CycleStop {
     Place(usize),
     Step(usize, usize, usize),

@@ -14,7 +14,7 @@ use crate::abstraction::{Abstraction, Assignment, may_be_one_message, same_messa
 /// Stands between the number and the name of what is read.
 const NUMBERED: char = '\'';
 
-/// Where the messages of a run come from.
+/// The origins of a run's messages.
 pub(crate) struct MessageSources<'a> {
     /// Whether nothing but the chart itself publishes the message of a field.
     pub(crate) is_own: &'a dyn Fn(&Path) -> bool,
@@ -22,7 +22,7 @@ pub(crate) struct MessageSources<'a> {
     pub(crate) announced: Vec<Path>,
 }
 
-/// What a blackboard shows.
+/// The contents of a blackboard.
 #[derive(Clone, Debug, Default)]
 struct ReplayBoard {
     /// The number of its last delivery.
@@ -69,7 +69,7 @@ pub(super) struct RunClaim {
     pub(super) step: usize,
 }
 
-/// What was asked.
+/// Decisions and claims of a replay, in order.
 #[derive(Default)]
 struct ReplayLog {
     /// The place of the next decision of this step.
@@ -151,7 +151,7 @@ impl<'a> ReplayHost<'a> {
         self.claim_of_delivery(self.delivery + 1, known);
     }
 
-    /// What is so of the messages before the first step.
+    /// Records facts about the messages before the first step.
     pub(super) fn assume(&mut self, known: &[Expression]) {
         self.claim_of_delivery(0, known);
     }
@@ -169,7 +169,7 @@ impl<'a> ReplayHost<'a> {
         }
     }
 
-    /// What is so after a step on the blackboard of the root, with the newest messages.
+    /// Records a fact after a step on the blackboard of the root, with the newest messages.
     pub(super) fn claim_of_root(&mut self, condition: &Expression, holds: bool) {
         let root = &self.boards[ScopeId::ROOT.index()];
         let newest = match root.delivery == self.delivery {

@@ -219,7 +219,7 @@ fn a_name_like_that_of_a_formula_is_reported() {
     assert_eq!(about_names("r = a . b"), [""; 0]);
 }
 
-/// What follows from a misspelt name is not reported beside it.
+/// Consequences of a misspelt name are not reported beside it.
 #[test]
 fn a_misspelt_name_is_the_only_finding() {
     let text = "Role: r\nLiveness:\nr = Stand . acton\naction = (Search | chase)~\nchase = Walk\n\

@@ -21,7 +21,7 @@ fn role(formula: &str, transitions: &str) -> String {
     format!("Role: r\nLiveness:\nr = {formula}\nTransitions:\n{transitions}\n")
 }
 
-/// What an action writes is what a guard reads that comes after it in the step.
+/// A guard reads the value that an earlier action of the same step wrote.
 #[test]
 fn what_a_step_assigns_its_guards_read() {
     let model = |value: &str| {
@@ -93,7 +93,7 @@ fn program(is_published: bool) -> CheckSettings {
     settings
 }
 
-/// What was assigned in an earlier step stays, unless another one publishes the message too.
+/// An assignment of an earlier step stays, unless another one publishes the message too.
 #[test]
 fn what_was_assigned_stays_until_another_publishes() {
     let model = role("A . B . (C | D)", LATER);
@@ -146,8 +146,8 @@ fn messages_do_not_vanish() {
     assert_eq!(verdict, PropertyOutcome::Violated, "{findings:?}");
 }
 
-/// What a function of the program returns is taken as the run needs it, but always the same of the
-/// same.
+/// A function of the program returns the value that the run needs, but always the same for the same
+/// arguments.
 #[test]
 fn functions_return_one_value_of_the_same_arguments() {
     let model = role("A . (B | C)", "CONDITION -> B : [near(Ball.x)]\nCONDITION -> C : [!near(Ball.x)]");

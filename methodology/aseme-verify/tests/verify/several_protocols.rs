@@ -121,7 +121,7 @@ fn a_part_that_is_repeated_is_enclosed() {
     assert_eq!(again, player, "merged twice");
 }
 
-/// What ends one protocol is not replaced by what begins the next.
+/// The end of one protocol is not replaced by the beginning of the next.
 #[test]
 fn outcomes_and_rules_stand_side_by_side() {
     let (charts, _) = transformations::aip_to_eac(&protocols());

@@ -7,7 +7,7 @@ use crate::text::{is_forever, is_name_character};
 /// Stands between operands whose operator the analyst has yet to choose.
 pub const OPEN_OPERATOR: &str = "?OP?";
 
-/// What a token is.
+/// The kind of a token.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum FormulaTokenKind {
     Name,

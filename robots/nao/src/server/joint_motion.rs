@@ -1,4 +1,4 @@
-//! What a body does, seen from the angles of its joints.
+//! Derives the motion of a body from the angles of its joints.
 
 use monas_robot::{Actuators, Posture, Skill};
 use nalgebra::{Isometry3, Point3};
@@ -98,7 +98,7 @@ fn is_folded(angles: &JointAngles) -> bool {
     [NaoJoint::LKneePitch, NaoJoint::RKneePitch].iter().all(|&knee| angles[knee as usize] > FOLDED_KNEE)
 }
 
-/// What a body on its feet begins: a fall to a side, or a kick.
+/// The skill that a body on its feet begins: a fall to a side, or a kick.
 fn upright_skill(feet: &[Isometry3<f64>; 2]) -> Option<Skill> {
     let [left, right] = feet;
     // The foot on the ground is the one above which the other is.

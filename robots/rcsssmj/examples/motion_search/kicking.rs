@@ -18,7 +18,7 @@ pub(crate) struct Kicking {
     searched: Vec<Searched>,
 }
 
-/// Where the search begins for the T1: what an earlier one has found for one foot, rounded.
+/// The start of the search for the T1: the result of an earlier search for one foot, rounded.
 const SEARCHED: &[Searched] = &[
     ("ball_x", 0.21, 0.014),
     ("ball_y", 0.1, 0.0105),
@@ -50,8 +50,7 @@ const SEARCHED: &[Searched] = &[
     ("hip_roll_rate", 0.092, 0.014),
 ];
 
-/// Where it begins elsewhere for the K1: the kick of the T1, made smaller by the length of the
-/// legs.
+/// The start of the other values for the K1: the kick of the T1, scaled by the length of the legs.
 const K1_BEGIN: &[(&str, f64)] = &[
     ("ball_x", 0.23),
     ("ball_y", 0.13),
@@ -76,7 +75,7 @@ const K1_BEGIN: &[(&str, f64)] = &[
     ("hip_roll", 0.6),
 ];
 
-/// What is not searched.
+/// The values that are not searched.
 const FIXED: [(&str, f64); 4] = [("still", 1.2), ("blending", 0.4), ("stiffness", 200.0), ("damping", 5.0)];
 
 /// Kicks that are tried of each kick.
@@ -93,11 +92,11 @@ const LONGEST: f64 = 8.0;
 const UPRIGHT: f64 = 0.54;
 /// The distance at which a kick costs nothing, m.
 const FAR: f64 = 6.0;
-/// What a fall costs, m.
+/// The cost of a fall, m.
 const FALL: f64 = 6.0;
-/// What a metre to the side costs.
+/// The cost of a metre to the side.
 const ASIDE: f64 = 1.0;
-/// What the greatest inclination costs, by 1 minus its cosine.
+/// The cost of the greatest inclination, by 1 minus its cosine.
 const INCLINATION: f64 = 10.0;
 
 impl Motion for Kicking {

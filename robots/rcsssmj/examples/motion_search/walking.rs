@@ -18,7 +18,7 @@ pub(crate) struct Walking {
     fast: f64,
 }
 
-/// Where the search begins for the T1: what an earlier one has found, rounded.
+/// The start of the search for the T1: the result of an earlier search, rounded.
 const SEARCHED: &[Searched] = &[
     ("frequency", 1.9, 0.12),
     ("height", 0.45, 0.009),
@@ -53,8 +53,7 @@ const SEARCHED: &[Searched] = &[
     ("starting", 0.6, 0.09),
 ];
 
-/// Where it begins elsewhere for the K1: the walk of the T1, made smaller by the length of the
-/// legs.
+/// The start of the other values for the K1: the walk of the T1, scaled by the length of the legs.
 const K1_BEGIN: &[(&str, f64)] = &[
     ("frequency", 2.2),
     ("height", 0.4),
@@ -92,7 +91,7 @@ const K1_BEGIN: &[(&str, f64)] = &[
 const FAST: f64 = 0.8;
 const K1_FAST: f64 = 0.5;
 
-/// What is not searched, besides the greatest speed ahead and the gains of the motors.
+/// Values that are not searched, besides the greatest speed ahead and the gains of the motors.
 const FIXED: [(&str, f64); 3] = [("backwards", 0.2), ("sideways", 0.2), ("turning", 0.8)];
 
 /// Seconds, and the velocities in them: ahead, at most the greatest, to the left, and of turning.
@@ -136,9 +135,9 @@ const REACHING: f64 = 0.8;
 const DEVIATIONS: [f64; 3] = [0.2, 0.15, 0.4];
 /// The part of a deviation that counts while the robot is to stand.
 const STILL: f64 = 0.3;
-/// What a fall costs, and the part of the trial that is left after it.
+/// The cost of a fall, and the factor for the part of the trial that is left after it.
 const FALL: [f64; 2] = [1.5, 4.0];
-/// What the mean inclination costs.
+/// The cost of the mean inclination.
 const INCLINATION: f64 = 15.0;
 /// A torso with a smaller cosine of its inclination has fallen.
 const UPRIGHT: f64 = 0.54;

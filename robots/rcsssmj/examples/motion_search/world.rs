@@ -16,15 +16,15 @@ pub(crate) const CYCLE: f64 = 0.02;
 /// Robot and ball after a cycle.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct State {
-    /// What the robot measures.
+    /// The measurements of the robot.
     pub(crate) motion: Motion,
-    /// Where the torso is, m.
+    /// The position of the torso, m.
     pub(crate) place: [f64; 3],
     /// Its heading, rad.
     pub(crate) heading: f64,
     /// The cosine of its inclination.
     pub(crate) upright: f64,
-    /// Where the ball is, m.
+    /// The position of the ball, m.
     pub(crate) ball: [f64; 2],
 }
 
@@ -35,7 +35,7 @@ pub(crate) struct World {
     commands: ChildStdin,
     states: ChildStdout,
     inertia: Inertia,
-    /// What was computed from the last state: the server moves the motors a cycle later.
+    /// Commands computed from the last state: the server moves the motors a cycle later.
     motors: Motors,
 }
 

@@ -1,4 +1,4 @@
-//! What the body of a host cannot do although activities of its agents rely on it.
+//! Limits of a host's body that concern activities of its agents.
 
 use std::collections::BTreeMap;
 

@@ -8,7 +8,8 @@ use super::description::Description;
 /// How far, m and rad, numbers may differ from those of the model.
 const SAME: f64 = 1e-6;
 
-/// What differs from a model and is not one robot's own: joints, lengths, axes, cameras, skills.
+/// Differences from a model that are not allowed to single robots: joints, lengths, axes, cameras,
+/// skills.
 pub(super) fn differences(description: &Description, model: &Anatomy) -> Vec<Diagnostic> {
     let mut comparison = Comparison { description, model, found: Vec::new() };
     comparison.joints();

@@ -70,7 +70,7 @@ fn values_that_do_not_go_together_are_reported_at_the_attribute_of_the_fault() {
     assert_eq!(wrong, ["a.xml:2:42: error[E0306]: paper burns"]);
     // An attribute that is not written has no place of its own.
     assert_eq!(found("bulbs='4'"), ["a.xml:2:4: error[E0306]: where?"]);
-    // What follows from a value that is refused anyway is not reported.
+    // Consequences of a refused value are not reported.
     assert_eq!(found("shade='papers' bulbs='x'").len(), 2);
 }
 

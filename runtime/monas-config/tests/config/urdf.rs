@@ -272,7 +272,7 @@ proptest! {
         prop_assert_eq!(anatomy.is_none(), diagnostics.iter().any(Diagnostic::is_error));
     }
 
-    /// What is cut or replaced in a file.
+    /// A file with a part cut or replaced.
     #[test]
     fn any_change_is_read_or_reported(at in 0..ARM.len(), length in 0_usize..40, word in "[a-z0-9 <>/\"=.-]{0,8}") {
         let end = (at + length).min(ARM.len());

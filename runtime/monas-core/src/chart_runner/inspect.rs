@@ -17,8 +17,8 @@ pub enum ChartAspect {
     /// A snapshot of its machine in JSON, the chart as SVG with the active states highlighted, and
     /// its shapes for viewers.
     State,
-    /// What its guards read and whether they hold, its timers and its blackboards, as one JSON
-    /// object: see `ChartState.values` of the records.
+    /// The values that its guards read and whether they hold, its timers and its blackboards, as
+    /// one JSON object: see `ChartState.values` of the records.
     Values,
 }
 

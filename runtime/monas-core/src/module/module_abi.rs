@@ -43,7 +43,7 @@ impl ModuleAbi {
 /// The contents of a module, or why it has none; `None` before the call.
 pub type ModuleExports = Option<Result<ModuleContents, String>>;
 
-/// What is in a module.
+/// The contents of a module.
 pub struct ModuleContents {
     /// Its activities, without those registered by other crates.
     pub activities: Vec<ModuleActivity>,

@@ -56,7 +56,7 @@ impl Observer for OwnOutputTap {
     }
 }
 
-/// Where recorded messages of others are published.
+/// The endpoint at which recorded messages of others are published.
 pub(crate) enum InputEndpoint {
     Published(AnyPublisher),
     Received(Receiver),

@@ -212,7 +212,7 @@ impl ReplayedChart {
     }
 
     fn apply(&mut self, mut update: AgentUpdate, now: Timestamp) -> Result<Vec<String>, Vec<String>> {
-        // What the change makes due was not done before the change.
+        // Events that the change makes due were not handled before the change.
         self.now = self.now.max(now);
         let mut notes = Vec::new();
         if let Some((_, swap)) = update.swap {

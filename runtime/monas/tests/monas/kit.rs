@@ -12,7 +12,7 @@ mod messages {
 pub(crate) use messages::{Ball, Game, Phase};
 
 narukom::topic! {
-    /// Where the ball is.
+    /// The position of the ball.
     pub(crate) BALL: narukom::State<Ball> = "test/ball";
     /// The state of the game.
     pub(crate) GAME: narukom::State<Game> = "test/game";

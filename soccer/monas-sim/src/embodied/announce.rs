@@ -42,7 +42,7 @@ pub(super) fn announcement(ground: &SharedWorld, robot: usize) -> Option<Announc
     })
 }
 
-/// What the field has to carry out of announcements to its robots.
+/// The orders to the field that result from announcements to its robots.
 pub(super) fn order(world: &SimulatedWorld, announcements: &[Announcement]) -> GameOrder {
     let mut order = world.referee().to_order();
     order.penalties = announcements.iter().map(|it| it.penalized.then_some(it.penalty_left)).collect();

@@ -36,7 +36,7 @@ pub struct FieldBody {
     pictures: PictureQueue<Picture>,
 }
 
-/// What the cameras deliver of one exposure.
+/// The output of the cameras for one exposure.
 enum Picture {
     Sightings(monas_robot::Sightings),
     Images(monas_robot::Images),
@@ -369,7 +369,7 @@ mod tests {
         assert_eq!([50.0, 100.0, 10.0, 83.0].map(cycle), [20, 10, 100, 10]);
     }
 
-    /// What a body perceives with the first images or sightings.
+    /// The percepts of a body with the first images or sightings.
     fn first_percepts(body: &mut FieldBody, pitch: &SharedField) -> Percepts {
         let mut percepts = Percepts::default();
         for cycle in 0..50 {

@@ -102,7 +102,7 @@ fn refused(error: monas_vision::Error) -> Error {
     Error::new(ErrorKind::Hardware, format!("the camera takes no image: {error}"))
 }
 
-/// What there is to see for a robot.
+/// The scene around a robot.
 fn scene(world: &SimulatedWorld, robot: usize) -> Scene {
     let (field, physics) = (world.field(), world.physics());
     let colours = world.referee().colours();

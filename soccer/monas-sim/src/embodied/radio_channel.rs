@@ -114,7 +114,8 @@ mod tests {
         RadioChannel::new(&[robot(2), robot(3)], radio, 7)
     }
 
-    /// What robot 1 receives of a thousand messages that robot 0 sends, one each tenth of a second.
+    /// Messages that robot 1 receives of a thousand from robot 0, which sends one each tenth of a
+    /// second.
     fn received(radio: Radio) -> Vec<(u64, u16)> {
         let (mut channel, mut received) = (channel(radio), Vec::new());
         for moment in 0..1100u16 {

@@ -4,8 +4,8 @@ use super::{GameState, Penalty, Referee, goal_side};
 use crate::state::WorldView;
 use crate::{EventKind, FieldSide, Offence};
 
-/// What a referee outside the simulation has decided. Teams and robots are indices into those of
-/// the world.
+/// Decisions of a referee outside the simulation. Teams and robots are indices into those of the
+/// world.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GameOrder {
     /// The state of the game.

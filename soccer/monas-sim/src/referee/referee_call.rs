@@ -4,7 +4,7 @@ use super::{GameState, Penalty, Referee};
 use crate::state::WorldView;
 use crate::{Error, ErrorKind, EventKind, Offence};
 
-/// What a person decides. Robots are indices into those of the world.
+/// A person's decision. Robots are indices into those of the world.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RefereeCall {
     /// READY: robots walk to their places for a kick-off.

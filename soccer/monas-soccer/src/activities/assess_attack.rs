@@ -117,8 +117,8 @@ fn mates(
 const SAME: f64 = 0.5;
 const SPEED: f64 = 0.3;
 
-/// What hinders a player on its way to the ball, as metres of straight walk: that it lies on the
-/// ground, that it does not see the ball, and each second since it has reported.
+/// Handicaps of a player on its way to the ball, as metres of straight walk: lying on the ground,
+/// not seeing the ball, and each second since its last report.
 const DOWN: f64 = 1.0;
 const BLIND: f64 = 1.0;
 const OLD: f64 = 0.05;

@@ -28,7 +28,7 @@ pub fn request_walk(blackboard: &mut Blackboard, walk: Walk) -> Result<(), BoxEr
     )
 }
 
-/// What a kick is for, and how hard it is.
+/// The purpose and the strength of a kick.
 #[derive(Clone, Copy, PartialEq, Default, Debug)]
 pub struct KickStyle {
     /// Whether it is a pass to a team mate.

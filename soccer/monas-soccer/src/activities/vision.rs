@@ -382,7 +382,7 @@ mod tests {
         assert!(seen.confidence > walked.confidence);
     }
 
-    /// What a camera shows from the centre of the field towards the yellow goal.
+    /// The image of a camera at the centre of the field towards the yellow goal.
     fn image(tilt: f64) -> Image {
         let (width, height, angle_of_view, camera_height) = (320, 240, 0.8343, 0.5);
         let head = HeadPose { height: camera_height, pitch: tilt, ..HeadPose::default() };

@@ -60,7 +60,7 @@ impl Activity for WalkTowardsBall {
 }
 
 impl WalkTowardsBall {
-    /// Where the robot meets the ball, on the field, in the robot's frame.
+    /// The point at which the robot meets the ball, on the field, in the robot's frame.
     fn place(&self, ball: &Ball, ground: Option<&RobotAndField>) -> Point2<f64> {
         if self.foresight <= 0.0 {
             return ball.position();

@@ -1,4 +1,4 @@
-//! Where to kick the ball.
+//! Selection of the direction of a kick.
 
 use nalgebra::{Point2, Vector2};
 

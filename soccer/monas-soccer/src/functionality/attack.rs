@@ -64,7 +64,7 @@ pub struct AttackPlayer {
     pub heading: f64,
     /// Its distance from the ball, metres.
     pub ball_distance: f64,
-    /// What hinders it on its way to the ball, as metres of straight walk.
+    /// Its handicap on the way to the ball, as metres of straight walk.
     pub handicap: f64,
     /// Seconds since its last pass.
     pub since_pass: f64,

@@ -82,7 +82,7 @@ pub struct BallFilter {
     model: BallModel,
     /// The ball; none before it was seen twice.
     ball: Option<Track>,
-    /// What may be the ball.
+    /// A track that may become the ball.
     candidate: Option<Track>,
 }
 
@@ -259,7 +259,7 @@ fn transition(dt: f64) -> Matrix4<f64> {
     transition
 }
 
-/// Where the ball was `age` before the time of the state.
+/// The observation model: the position of the ball `age` before the time of the state.
 fn observation(age: Duration) -> Matrix2x4<f64> {
     let mut observation = Matrix2x4::identity();
     let age = age.as_secs_f64();

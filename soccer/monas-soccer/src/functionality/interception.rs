@@ -2,7 +2,7 @@
 
 use nalgebra::{Point2, Vector2};
 
-/// Where a ball crosses the line x = 0 of the robot's frame.
+/// The point at which a ball crosses the line x = 0 of the robot's frame.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Crossing {
     /// Seconds from now.
@@ -11,8 +11,8 @@ pub struct Crossing {
     pub y: f64,
 }
 
-/// Where a ball ahead of the robot crosses its lateral axis, if it does so before friction stops
-/// it.
+/// The crossing of the robot's lateral axis by a ball ahead of it; none if friction stops it
+/// before.
 ///
 /// It rolls straight and decelerates by `deceleration` m/s², so the time for a distance `s` is the
 /// smaller root of `s = v t - a t²/2`.
@@ -37,9 +37,9 @@ const ROLLS: f64 = 0.7;
 /// Interval of the search for the place at which a ball is met, seconds.
 const INTERVAL: f64 = 0.1;
 
-/// Where a robot that walks with `walk` m/s first meets a ball that rolls, in the robot's frame;
-/// where the ball stops, or is after `foresight` seconds, if it is not met before. A ball that
-/// hardly rolls is met where it is.
+/// The first point at which a robot that walks with `walk` m/s meets a rolling ball, in the robot's
+/// frame; the position of the ball when it stops, or after `foresight` seconds, if it is not met
+/// before. A ball that hardly rolls is met at its position.
 ///
 /// The ball rolls straight and decelerates by `deceleration` m/s².
 pub fn meeting_place(

@@ -16,7 +16,7 @@ pub enum GoalPost {
     Either,
 }
 
-/// What a sighting shows of the field.
+/// The landmark that a sighting shows.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Landmark {
     /// A post of a goal.
@@ -34,7 +34,7 @@ pub enum Landmark {
 /// A sighting of a landmark.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct LandmarkSighting {
-    /// What it is.
+    /// The landmark.
     pub landmark: Landmark,
     /// Distance along the ground, metres.
     pub distance: f64,

@@ -78,7 +78,7 @@ pub enum SkillEnd {
     Interrupted,
 }
 
-/// What the body reports.
+/// The state that the body reports.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct BodyReport {
     /// Its posture.

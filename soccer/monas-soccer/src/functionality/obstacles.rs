@@ -35,7 +35,7 @@ struct Track {
     is_confirmed: bool,
     /// Number of pictures since it was last seen.
     unseen: u32,
-    /// Where and when the window began in which its motion is judged.
+    /// The position at the beginning of the window in which its motion is judged, with its time.
     window_position: Point2<f64>,
     window_start: Timestamp,
 }

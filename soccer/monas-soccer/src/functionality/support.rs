@@ -1,4 +1,4 @@
-//! Where a player waits while a team mate goes to the ball.
+//! The waiting position of a player while a team mate goes to the ball.
 
 use nalgebra::Point2;
 

@@ -1,4 +1,4 @@
-//! What is on a field and around it.
+//! The field and its surroundings, for the renderer.
 
 use nalgebra::{Point2, Point3, Vector2, Vector3};
 
@@ -60,7 +60,7 @@ pub struct RobotFigure {
     pub lies: bool,
 }
 
-/// What there is to see.
+/// The objects, colours and lights of a rendered image.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
     /// The field.

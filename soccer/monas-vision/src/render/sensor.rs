@@ -1,4 +1,4 @@
-//! What a camera makes of light: blur, exposure, noise, and the conversion to YUV 4:2:2.
+//! The model of a camera's sensor: blur, exposure, noise, and the conversion to YUV 4:2:2.
 
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg64;

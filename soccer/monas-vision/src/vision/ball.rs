@@ -327,7 +327,7 @@ impl Look<'_> {
             BallPattern::Orange => (share(orange) > 0.7).then(|| share(orange)),
             BallPattern::BlackAndWhite => {
                 let contrast = f64::from(darkest) / f64::from(brightest.max(1));
-                // What is white all over is dark at its lower end, where the light does not reach.
+                // A white object is dark at its lower end, where the light does not reach.
                 let has_patch_above = 50 * dark_above > upper;
                 let is_patched =
                     share(dark) > 0.04 && share(dark) < 0.75 && contrast < 0.48 && has_patch_above;

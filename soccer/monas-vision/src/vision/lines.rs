@@ -261,7 +261,7 @@ fn line_point(
     let reach = 2.0 + 0.25 * (finish - begin);
     let carpet_before = is_carpet(begin - reach) || is_carpet(begin - reach - 2.0);
     let carpet_after = is_carpet(finish + reach) || is_carpet(finish + reach + 2.0);
-    // What is bright is white, unless it is too thin to show its colour.
+    // Bright pixels are white, unless the line is too thin to show its colour.
     let (x, y) = pixel(middle as usize);
     let class = look.table.class(look.image.yuv(x, y));
     let is_pale = class == ColourClass::White || (finish - begin < 5.0 && is_colourless(class));

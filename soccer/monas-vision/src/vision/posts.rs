@@ -98,7 +98,7 @@ fn post(
 ) -> Option<Sight> {
     let (map, step) = (look.map, look.map.step as f64);
     let middle = (left + right) / 2;
-    // Where the field fills the image to its upper edge, a leg of a robot and a post look the same.
+    // If the field fills the image to its upper edge, a leg of a robot and a post look the same.
     if paint == GoalPaint::White && border.row(middle) < 2.0 {
         return None;
     }
@@ -111,7 +111,7 @@ fn post(
     let centre = foot_middle * step;
     let bottom = (foot + 1) as f64 * step;
     let is_cut = foot + 2 >= map.rows;
-    // What is cut on two sides has neither foot nor width.
+    // An object that is cut on two sides has neither foot nor width.
     if is_cut && (left == 0 || right >= map.columns) {
         return None;
     }

@@ -80,7 +80,7 @@ impl RobotScan {
     }
 }
 
-/// What stands in a group of columns and is as high and wide as a robot, in cells.
+/// An object in a group of columns that is as high and wide as a robot, in cells.
 #[derive(Clone, Copy, Debug)]
 struct Body {
     left: usize,

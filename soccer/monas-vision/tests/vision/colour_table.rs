@@ -71,7 +71,7 @@ fn drawn(condition: &Condition, turned: bool) -> Vec<u8> {
     pixels
 }
 
-/// What the tool makes of two images: one of each goal.
+/// The colour model that the tool calibrates on two images: one of each goal.
 fn table(condition: &Condition) -> ColourModel {
     let mut sampler = ColourSampler::default();
     for turned in [false, true] {
@@ -171,7 +171,7 @@ fn images_without_carpet_need_a_sample_of_it() {
     let mut sampler = ColourSampler::default();
     assert!(!sampler.add_image(&image, &camera));
     assert_eq!(sampler.model().unwrap_err().kind(), ErrorKind::Colours);
-    // What a person calls carpet is carpet.
+    // The person's name for a colour counts.
     let green: Vec<u8> = (0..32 * 48).flat_map(|_| [90, 110, 90, 105]).collect();
     let image = Image::new(64, 48, &green).unwrap();
     let area = SampleBox { left: 0, top: 0, width: 32, height: 32 };

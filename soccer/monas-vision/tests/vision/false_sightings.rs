@@ -1,5 +1,5 @@
-//! What is no ball, post or robot is taken for none: near robots, robots that lie, and carpet that
-//! a light bleaches.
+//! No ball, post or robot is found where there is none: near robots, near robots that lie, and on
+//! carpet that a light bleaches.
 #![allow(clippy::unwrap_used, reason = "a test")]
 
 use monas_vision::render::{Light, Renderer, RobotFigure, Scene};

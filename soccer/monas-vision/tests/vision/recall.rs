@@ -7,7 +7,7 @@ use monas_vision::FieldObjects;
 use crate::examines_large_images;
 use crate::measure::{CONDITIONS, Measures, Sequence, Tally, Views, mean, ninth_decile};
 
-/// What is required of the sightings of a kind of object, over all lights.
+/// The bounds on the sightings of a kind of object, over all lights.
 struct Bounds {
     /// Least number shown, so that the others mean something.
     shown: u32,
@@ -62,7 +62,7 @@ fn check_all(all: &Measures, posts: f64) {
     check_lines(all);
 }
 
-/// What is published of lines and border: how much of the lines is covered, and where they lie.
+/// Published lines and border: the share of the lines that is covered, and the errors of position.
 fn check_lines(all: &Measures) {
     println!("{all}");
     assert!(all.right_segments > all.images, "{} parts of lines", all.right_segments);

@@ -192,7 +192,7 @@ fn two_tapes_share_a_timeline_with_their_first_difference() {
     viewer.wait(|message| (message["beside"]["now"] == 3.0).then_some(()));
 }
 
-/// What is seen at a time: the note, and the active states.
+/// The view at a time: the note, and the active states.
 fn look(viewer: &mut Viewer, seconds: f64) -> (Value, Value) {
     viewer.send(json!({"type": "seek", "seconds": seconds}));
     let (mut note, mut active) = (Value::Null, Value::Null);

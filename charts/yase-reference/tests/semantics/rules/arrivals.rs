@@ -52,7 +52,7 @@ fn r12_a_region_that_is_entered_again_while_it_arrives_keeps_what_is_in_it() {
     );
 }
 
-/// What is drawn, in order: of how many.
+/// The random draws, in order: the number of alternatives of each.
 fn draws(join: JoinMode) -> Vec<u32> {
     let chart = chart(
         "

@@ -300,7 +300,7 @@ fn r03_a_guard_that_failed_is_reported_again_when_its_own_blackboard_was_written
     );
 }
 
-/// What one call takes: how many micro-steps, and where it leads.
+/// The effect of one call: the number of micro-steps, and the resulting states.
 fn handled(prepare: impl Fn(&mut Machine), at: u64) -> (u32, String) {
     let text = "
         START

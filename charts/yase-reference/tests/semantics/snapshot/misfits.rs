@@ -27,7 +27,7 @@ const CHART: &str = "
     off -> both : g
 ";
 
-/// What is wrong with the snapshot of the running chart once it was changed, one a line.
+/// The issues of the running chart's snapshot after a change, one a line.
 #[track_caller]
 fn found(change: impl FnOnce(&mut Snapshot)) -> String {
     let stage = Stage::new(CHART, &["f", "g"]);

@@ -1,5 +1,5 @@
-//! What only some charts and some semantics have: HISTORY, timers of states, composites without an
-//! active child, JOINs that wait.
+//! Contents of snapshots of only some charts and semantics: HISTORY, timers of states, composites
+//! without an active child, JOINs that wait.
 
 use yase::{MicroStep, Semantics, TimerScope, Timestamp};
 

@@ -87,7 +87,7 @@ impl Stage {
     }
 }
 
-/// What a host does at a migration: activities and blackboards get new indices.
+/// The host's part of a migration: activities and blackboards get new indices.
 pub(crate) fn rekey(host: &mut TestHost, chart: &Arc<CompiledChart>, report: &MigrationReport) {
     let activations: BTreeMap<_, _> = report.activations.iter().copied().collect();
     for job in &mut host.jobs {

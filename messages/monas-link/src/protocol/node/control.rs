@@ -155,7 +155,8 @@ impl Node {
         }
     }
 
-    /// What this host lacks comes first; the progress of the topics fills the rest, in turn.
+    /// Requests for missing messages come first; the progress of the topics fills the rest, in
+    /// turn.
     fn make_beat(&mut self, now: Timestamp) -> Beat {
         let mut room = self.room();
         let mut beat = Beat { sent: now.as_nanos(), ..Beat::default() };

@@ -78,8 +78,8 @@ impl GuardCheck<'_> {
             && self.goes_on(one.target)
     }
 
-    /// What a transition without a trigger requires of its source: 0 nothing, 1 that nothing inside
-    /// can step, 2 that it has completed.
+    /// The requirement of a transition without a trigger on its source: 0 nothing, 1 that nothing
+    /// inside can step, 2 that it has completed.
     fn source_requirement(&self, id: TransitionId) -> u8 {
         let transition = self.subject.transition(id);
         match self.subject.kind(transition.source) {

@@ -123,7 +123,7 @@ fn names_with_dots_stand_in_quotes() {
     let layers = set(Layers::new(), &["agent.a.statechart.\"models/goalie.srm\".enable=0"]);
     let resolved = config::resolve_text(&Source::new("a.xml", text), &Grammar::agents(), &layers);
     assert!(resolved.unmatched.is_empty() && resolved.diagnostics.is_empty(), "{resolved:#?}");
-    // What is shown can be set.
+    // A shown value can be set.
     assert_eq!(value(&resolved, "agent.a.statechart.\"models/goalie.srm\".enable").0, "0");
 }
 

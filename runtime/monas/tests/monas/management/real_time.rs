@@ -20,7 +20,7 @@ fn ask(run: &RunHandle, change: Change) -> monas::records::Changed {
     run.change("local", change).unwrap()
 }
 
-/// What comes next that is one of these words.
+/// Waits for the next note that is one of these words.
 fn until(notes: &Receiver<String>, word: &str) {
     while notes.recv_timeout(PATIENCE).unwrap() != word {}
 }

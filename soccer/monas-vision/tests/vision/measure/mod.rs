@@ -83,7 +83,7 @@ fn camera_light() -> Light {
     Light { noise: 3.5, blur: 0.7, ..Light::default() }
 }
 
-/// What was there to see and what was seen of a kind of object.
+/// The visible and the found objects of a kind.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Tally {
     /// Objects that were in view and in range, and how many of them were seen.
@@ -217,7 +217,7 @@ impl fmt::Display for Measures {
     }
 }
 
-/// What the images of a sequence show.
+/// The subject of the images of a sequence.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Views {
     /// A robot that looks around anywhere on the field.
@@ -292,7 +292,7 @@ impl Random {
     }
 }
 
-/// Where the robot is at the time of an image, and what is around it.
+/// The pose of the robot at the time of an image, and its surroundings.
 struct View {
     scene: Scene,
     field_from_robot: Isometry2<f64>,

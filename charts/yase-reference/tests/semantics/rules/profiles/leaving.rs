@@ -1,4 +1,4 @@
-//! What running activities, ancestors as targets, JOINs and timers mean for leaving.
+//! Leaving states with running activities, ancestors as targets, JOINs and timers.
 
 use yase::{Semantics, TimerScope};
 
