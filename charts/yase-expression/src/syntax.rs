@@ -154,7 +154,7 @@ impl Expression {
     }
 
     /// The expression with parts replaced: those for which the closure has another one, outermost
-    /// first. What it has is not looked into again.
+    /// first. The replacement itself is not searched again.
     pub fn replaced(&self, other: &mut dyn FnMut(&Expression) -> Option<Expression>) -> Expression {
         if let Some(other) = other(self) {
             return other;

@@ -28,7 +28,7 @@
 //!   A compound transition through connectors is taken completely or not at all.
 //!
 //! One call of [`Machine::run_to_completion`] is a transaction: messages are delivered, transitions
-//! are taken until none is enabled, outputs are published, activities start. Where dialects differ,
+//! are taken until none is enabled, outputs are published, activities start. If dialects differ,
 //! the [`Semantics`] for which a chart is compiled selects the variant.
 //!
 //! # Example

@@ -26,7 +26,8 @@ pub(crate) fn dispatch<Argument: Into<OsString> + Clone>(
     let done = match parsed {
         Ok(arguments) if arguments.command.is_stream() => execute(arguments.command, console),
         Ok(arguments) => {
-            // What the command finds decides its exit code, also if its results are not read.
+            // The exit code depends on the findings of the command, also if its results are not
+            // read.
             let mut out = UnreadOutput(&mut *console.out);
             let mut rest = CommandOutput {
                 out: &mut out,

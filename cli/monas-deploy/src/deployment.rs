@@ -26,7 +26,7 @@ pub struct Installation {
     pub is_copied: bool,
     /// The release that ran before.
     pub previous: Option<String>,
-    /// What keeps the program running, as text.
+    /// The service that keeps the program running, as text.
     pub service: String,
 }
 
@@ -35,7 +35,7 @@ pub struct Installation {
 pub struct Rollback {
     /// The release that runs again.
     pub release: String,
-    /// What keeps the program running, as text.
+    /// The service that keeps the program running, as text.
     pub service: String,
 }
 

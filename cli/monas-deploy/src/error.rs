@@ -26,7 +26,7 @@ impl Error {
         Error { kind, message: message.into() }
     }
 
-    /// What kind of error it is.
+    /// The kind of the error.
     pub fn kind(&self) -> ErrorKind {
         self.kind
     }

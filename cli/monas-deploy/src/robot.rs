@@ -186,7 +186,7 @@ fn entry(path: &Path, robot: &Element) -> Result<Robot, Box<Diagnostic>> {
     })
 }
 
-/// What is wrong with `--record` among the arguments: a relative path lies in a release, which is
+/// The reason to refuse `--record` among the arguments: a relative path lies in a release, which is
 /// removed some day.
 fn misplaced_recording(arguments: &[String], is_recorded: bool) -> Option<String> {
     let place = arguments.iter().position(|word| word == "--record" || word.starts_with("--record="))?;

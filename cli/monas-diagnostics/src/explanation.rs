@@ -1,11 +1,11 @@
 //! The explanation of one code.
 
-/// What a diagnostic code means, how it arises, and how to correct the text.
+/// Meaning, causes and remedy of a diagnostic code.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub struct Explanation {
     /// The code, such as `E0205`.
     pub code: &'static str,
-    /// What is wrong, in a few words.
+    /// The fault in a few words.
     pub title: &'static str,
     /// The parts, in their order.
     pub parts: Vec<ExplanationPart>,
@@ -20,7 +20,7 @@ pub enum ExplanationPart {
     File {
         /// Its name, if the example names it.
         name: Option<&'static str>,
-        /// What it contains, which is the usual ending of its name.
+        /// The language of its content, which is the usual ending of its name.
         language: &'static str,
         /// The text.
         text: &'static str,

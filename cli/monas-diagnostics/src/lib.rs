@@ -1,4 +1,4 @@
-//! What each diagnostic code means, for `monas explain` and for the book.
+//! Explanations of all diagnostic codes, for `monas explain` and for the book.
 //!
 //! The folder `explanations` is the only source. It has one Markdown file per [`Family`] of codes,
 //! with one section per code: what the diagnostic means, the files of an example and the command

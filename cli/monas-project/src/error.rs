@@ -41,12 +41,12 @@ impl Error {
         Error::new(ErrorKind::File, format!("cannot {verb} {}: {error}", path.display()))
     }
 
-    /// What kind of error it is.
+    /// The kind of the error.
     pub fn kind(&self) -> ErrorKind {
         self.kind
     }
 
-    /// What is wrong, if the kind is [`ErrorKind::Invalid`].
+    /// The diagnostics, if the kind is [`ErrorKind::Invalid`].
     pub fn diagnostics(&self) -> &[Diagnostic] {
         &self.diagnostics
     }

@@ -1,4 +1,4 @@
-//! What the commands of `monas` write to a terminal: results, diagnostics, failures, tables.
+//! Terminal output of the commands of `monas`: results, diagnostics, failures, tables.
 //!
 //! A command receives a [`CommandOutput`]: the writers of its results and of its diagnostics, and
 //! what they are capable of (colours, progress bars). It returns an [`Exit`], or a

@@ -10,7 +10,7 @@ use tracing_subscriber::filter::{LevelFilter, Targets};
 use tracing_subscriber::prelude::*;
 use tracing_subscriber::{Registry, reload};
 
-/// What is logged without MONAS_LOG: this level and graver ones. Warnings of zenoh do not concern a
+/// The default of MONAS_LOG: this level and graver ones. Warnings of zenoh do not concern a
 /// run, and failures are reported as errors of the link.
 fn usual(level: LevelFilter) -> Targets {
     Targets::new().with_default(level).with_target("zenoh", LevelFilter::ERROR)

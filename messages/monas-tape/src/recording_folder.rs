@@ -60,8 +60,8 @@ impl RecordingFolder {
         Ok(file)
     }
 
-    /// Removes the oldest recordings beyond the limits, except the one at `current`. What cannot be
-    /// removed is logged and stays.
+    /// Removes the oldest recordings beyond the limits, except the one at `current`. Recordings
+    /// that cannot be removed are logged and stay.
     pub(crate) fn remove_oldest(&self, current: &Path) {
         let Ok(stored) = self.stored() else { return };
         let mut count = stored.len();

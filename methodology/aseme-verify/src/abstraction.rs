@@ -1,7 +1,7 @@
 //! Abstraction of a chart from its program, so that it can be explored alone.
 //!
 //! Conditions on messages and functions become free inputs, as far as [`logic`](crate::logic) finds
-//! them satisfiable together; timers and states keep their meaning. What an assignment writes is
+//! them satisfiable together; timers and states keep their meaning. The value of an assignment is
 //! known until the next messages are delivered; other actions may change anything that their
 //! blackboard shows. Arrivals of messages become events.
 

@@ -145,7 +145,7 @@ impl Default for BodySettings {
 
 impl BodySettings {
     /// Offers a simulated world's body at an address, for agents in another process that open a
-    /// body of this kind there. What is returned senses the body, and ignores commands.
+    /// body of this kind there. The returned robot senses the body, and ignores commands.
     ///
     /// # Errors
     /// There is no such kind, it has no interface for other processes, the address cannot be used,

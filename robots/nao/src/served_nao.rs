@@ -10,8 +10,8 @@ use crate::server::LolaServer;
 
 /// A simulated body that is commanded through LoLA only.
 ///
-/// Each [`sense`](Robot::sense) is a cycle of the server. What the runtime of this process commands
-/// is ignored: the agents of the robot are in another process, in which [`Nao`](crate::Nao)
+/// Each [`sense`](Robot::sense) is a cycle of the server. Commands of the runtime of this process
+/// are ignored: the agents of the robot are in another process, in which [`Nao`](crate::Nao)
 /// connects to the socket.
 pub struct ServedNao {
     server: LolaServer,

@@ -181,8 +181,8 @@ impl Percept {
     /// perceive.
     ///
     /// # Errors
-    /// The parentheses are not balanced, or a percept does not have the form of its kind. What was
-    /// read before remains.
+    /// The parentheses are not balanced, or a percept does not have the form of its kind. Percepts
+    /// read before it remain.
     pub fn decode(&mut self, message: &[u8], robot: &Humanoid) -> Result<(), Error> {
         self.has_sights = false;
         self.sights.clear();

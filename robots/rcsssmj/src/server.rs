@@ -150,7 +150,7 @@ impl Drop for Server {
     }
 }
 
-/// Creates a folder that only this user can access. Where one of that name exists, it gets a
+/// Creates a folder that only this user can access. If one of that name exists, it gets a
 /// number: Python executes what is in it, and in the folder for temporary files another user may
 /// have prepared it.
 fn private_folder(parent: &Path, name: &str) -> std::io::Result<PathBuf> {

@@ -77,8 +77,8 @@ pub struct Ramp {
 }
 
 impl Ramp {
-    /// Advances by `seconds` and returns the velocity to walk with. What is not finite counts as
-    /// zero.
+    /// Advances by `seconds` and returns the velocity to walk with. Components that are not finite
+    /// count as zero.
     pub fn advance(&mut self, wanted: WalkVelocity, gait: &Gait, seconds: f64) -> WalkVelocity {
         let (linear, angular) = ACCELERATION;
         let WalkVelocity { x, y, turn } = &mut self.velocity;

@@ -122,8 +122,8 @@ fn pose(element: &Element, grammar: &Grammar, anatomy: &Anatomy) -> JointPose {
     }
 }
 
-/// Warns of joints that have to turn faster than they can. Where a joint is before the first pose
-/// that names it is not known.
+/// Warns of joints that have to turn faster than they can. The position of a joint before the
+/// first pose that names it is not known.
 fn too_fast(
     elements: &[&Element],
     poses: &[JointPose],

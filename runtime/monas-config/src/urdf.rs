@@ -11,8 +11,8 @@
 //! | `mimic` | a link that moves with another joint |
 //! | `inertial` of a `link` | `mass`, and its centre |
 //!
-//! Shapes, inertias, transmissions and elements of other programs have no effect. What URDF has no
-//! words for is in an element `monas`, which other programs ignore:
+//! Shapes, inertias, transmissions and elements of other programs have no effect. Facts that
+//! URDF cannot express are in an element `monas`, which other programs ignore:
 //!
 //! | in `monas` | gives |
 //! |---|---|

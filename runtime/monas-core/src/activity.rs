@@ -188,7 +188,7 @@ impl Topics {
     }
 
     /// Adds a skill of the body that the activity requests through the topics that it publishes, by
-    /// the name that bodies give it: `KICK_LEFT`. What the body cannot do is reported before a run.
+    /// the name that bodies give it: `KICK_LEFT`. A missing skill is reported before a run.
     pub fn performs(mut self, skill: &'static str) -> Topics {
         self.skills.push(skill);
         self

@@ -3,7 +3,7 @@
 //!
 //! A crash handler may neither allocate nor take a lock. A slot therefore consists of atomics that
 //! only its thread writes. Slots form a list that is never shortened: the slot of a thread that has
-//! ended is taken by another. What a slot refers to is never freed.
+//! ended is taken by another. The memory that a slot refers to is never freed.
 
 use std::cell::Cell;
 use std::marker::PhantomData;

@@ -89,7 +89,7 @@ impl Simulation {
         self.now
     }
 
-    /// Executes everything that is due before `end`. What is due at `end` itself belongs to the
+    /// Executes everything that is due before `end`. Events due at `end` itself belong to the
     /// next call, so that an agent at 10 Hz runs ten times in the first second: at 0 ms, 100 ms and
     /// so on to 900 ms.
     ///
@@ -261,8 +261,8 @@ impl Simulation {
         host.is_some_and(|host| host.raise(agent, event))
     }
 
-    /// The time of the next moment. What a paused agent was due to do before is due now when it
-    /// resumes: time does not go back.
+    /// The time of the next moment. Calls that became due while an agent was paused are due
+    /// now when it resumes: time does not go back.
     fn due(&self) -> Timestamp {
         let world = self.world.iter().map(WorldDriver::due);
         let script = self.script.keys().next().map(|(moment, _)| *moment);

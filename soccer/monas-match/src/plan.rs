@@ -284,7 +284,8 @@ impl MatchPlan {
     }
 
     /// Replaces bodies on the field, given team, number and body: programs that command a body
-    /// themselves take it over. What was replaced before is given to the next.
+    /// themselves take it over. Each replacement receives the body of the
+    /// one before.
     pub fn embody(
         mut self,
         embody: impl Fn(u8, u8, Box<dyn Robot>) -> Box<dyn Robot> + Send + 'static,

@@ -4,8 +4,8 @@
 //! the log, and a view from above. It watches a run through its control socket, as the commands of
 //! the terminal do, so that a run without a studio pays nothing, and a viewer cannot block a run.
 //! It changes one only if the studio was [allowed](StudioSettings::allows_control) to, by the same
-//! requests as these commands. What is drawn from above is a [`Scene`], which the program gives:
-//! this crate knows no sport.
+//! requests as these commands. The view from above is a [`Scene`] of the program: this crate
+//! knows no sport.
 //!
 //! # Design rationale
 //!
@@ -21,8 +21,8 @@
 //!   strictly, and refused in one place.
 //! - **Edits are edits of text.** Models can be edited that the program lists in a
 //!   [`ModelWorkspace`]; what a page does in a drawing becomes replacements in the text of the
-//!   file. What models mean is a [`ModelLanguage`]; that of the method is
-//!   [`AsemeLanguage`], to which the program gives its names.
+//!   file. The language of models is a [`ModelLanguage`]; that of the method
+//!   is [`AsemeLanguage`], to which the program gives its names.
 //! - **The drawing comes from the run.** Shapes are those of [`yase_export::to_picture`], the same
 //!   layout as in drawings of models. The page only draws them.
 //!

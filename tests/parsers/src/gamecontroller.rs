@@ -1,5 +1,5 @@
-//! Packets of the GameController: each is read, or is an error that says what is wrong. What is
-//! read is written again as the same bytes.
+//! Packets of the GameController: each is read, or is an error that says what is wrong. A packet
+//! that is read is written again as the same bytes.
 
 use monas_gamecontroller::{GameControlData, MonitorRequest, ReturnData};
 

@@ -17,8 +17,8 @@ pub(crate) struct NewArguments {
     /// Create the activity as a module: a crate in `modules` that can be loaded at run time.
     #[arg(long)]
     pub(crate) module: bool,
-    /// Where the project finds Monas: a checkout, the address of a git repository, or a version;
-    /// the checkout that this command was built from if not given.
+    /// The source of Monas for the project: a checkout, the address of a git repository, or a
+    /// version; the checkout that this command was built from if not given.
     #[arg(long, value_name = "PATH|GIT|VERSION")]
     pub(crate) monas: Option<String>,
     #[command(flatten)]

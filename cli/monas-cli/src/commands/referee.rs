@@ -26,7 +26,7 @@ const LOOK: Duration = Duration::from_millis(20);
     OperatorCommand::help(), "wait SECONDS", "reads on after this time, for scripts"
 ))]
 pub(crate) struct RefereeArguments {
-    /// Where the robots are: an address, which may be a broadcast address. The port is 3838 if not
+    /// The address of the robots, which may be a broadcast address. The port is 3838 if not
     /// given.
     #[arg(value_name = "ADDRESS", default_value = "127.0.0.1")]
     to: Endpoint,

@@ -99,7 +99,7 @@ pub(crate) struct RunArguments {
     #[cfg(all(unix, feature = "soccer"))]
     #[arg(long, value_name = "ROBOT", requires = "body", conflicts_with_all = ["pace", "seed", "studio"])]
     pub(crate) only: Option<String>,
-    /// Where the body of the robot of --only is served.
+    /// The address at which the body of the robot of --only is served.
     #[cfg(all(unix, feature = "soccer"))]
     #[arg(long, value_name = "ADDRESS", requires = "only", value_hint = ValueHint::FilePath)]
     pub(crate) body: Option<String>,

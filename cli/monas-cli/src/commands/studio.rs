@@ -36,7 +36,7 @@ pub(crate) struct StudioArguments {
     format: FormatArgument,
 }
 
-/// Where a studio listens.
+/// The address on which a studio listens.
 #[derive(Args, Clone, Debug, Default)]
 pub(crate) struct ListenArgument {
     /// The studio's address, such as 127.0.0.1:8080; 127.0.0.1 with the first free port from 4810
@@ -212,7 +212,7 @@ fn open_tape(
     tape.map_err(|error| CommandFailure::failed(format, error))
 }
 
-/// What this program draws from above.
+/// The view from above that this program offers.
 #[cfg(feature = "soccer")]
 pub(crate) fn scene() -> Option<Arc<dyn Scene>> {
     Some(Arc::new(monas_scene::SoccerField))

@@ -39,7 +39,7 @@ struct RunSample {
     run: String,
     /// Time of the run.
     now: Duration,
-    /// What endangers its results.
+    /// Conditions that endanger its results.
     alarms: Vec<String>,
     agents: Vec<AgentEntry>,
     topics: Vec<TopicEntry>,

@@ -69,7 +69,7 @@ fn complete_run(overview: &TapeOverview) -> Result<RecordedRun, String> {
     Ok(run)
 }
 
-/// What a tape says about its run.
+/// Reads the description of the run from a tape.
 fn description(overview: &TapeOverview) -> Result<RecordedRun, String> {
     let facts = overview.facts.iter().find(|facts| facts.name == monas_recording::RUN);
     let facts =

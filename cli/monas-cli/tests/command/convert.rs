@@ -183,7 +183,7 @@ fn a_role_goes_to_scxml_without_guards_that_would_be_open() {
     assert_eq!(answer.code, Some(0), "it reads back: {}", answer.err);
 }
 
-/// What is written for tools is read back as the same model.
+/// A chart written for tools is read back as the same model.
 #[test]
 fn a_chart_in_a_file_of_models_can_be_read() {
     let folder = tempfile::tempdir().expect("a folder");

@@ -46,7 +46,7 @@ fn an_unknown_code_is_answered_with_near_ones() {
     }
 }
 
-/// What the commands of an example print, in a folder with its files.
+/// The output of an example's commands, in a folder with its files.
 fn printed(it: &Explanation) -> Option<String> {
     let commands = it.command()?;
     let folder = tempfile::tempdir().expect("a folder");

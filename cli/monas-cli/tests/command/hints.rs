@@ -1,4 +1,4 @@
-//! What the command says to mistakes, and how it ends.
+//! Replies to mistakes on the command line, and exit codes.
 
 use std::fs;
 use std::path::Path;

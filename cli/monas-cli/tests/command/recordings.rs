@@ -185,7 +185,7 @@ fn a_full_disk_leaves_a_role_as_it_was() {
     let goalie = root().join("models/goalie.srm");
     let before = fs::read_to_string(goalie).expect("a role");
     fs::write(&role, &before).expect("there is room");
-    // What is left takes a part of the role only.
+    // The remaining space holds only a part of the role.
     let mut ballast = fs::File::create(disk.0.path().join("ballast")).expect("there is room");
     while std::io::Write::write_all(&mut ballast, &[0; 4096]).is_ok() {}
     let answer = monas(&["model", "regenerate", &text(&role), "-o", &text(&role)]);

@@ -48,7 +48,7 @@ fn add_command(words: &[&str], page: &mut String) {
 
 #[test]
 fn the_page_of_commands_is_up_to_date() {
-    let mut page = String::from("What each command says of itself with `--help`.\n");
+    let mut page = String::from("The output of `--help` of each command.\n");
     add_command(&[], &mut page);
     assert!(page.contains("\nmonas run\n") && page.contains("\nmonas agent swap\n"), "{page}");
     is_up_to_date("commands.txt", page.trim_end());

@@ -20,9 +20,9 @@ use crate::iac::{Iac, IacNode, IacTransition};
 ///
 /// Returns the paths, by label, of the composites that were found. One that is not built as the
 /// participant is stays as it is, and that is an error (E0835): the role would not do what the
-/// protocol asks for. Where the role says another thing than the protocol inside the part, the
-/// protocol holds, and that is said (E0836). A protocol of which nothing is found is reported
-/// (E0837), and a part whose rule or outcomes have no place (E0839).
+/// protocol asks for. If the role differs from the protocol inside the part, the protocol holds,
+/// and that is reported (E0836). A protocol of which nothing is found is reported (E0837), and a
+/// part whose rule or outcomes have no place (E0839).
 pub fn merge_eac(iac: &mut Iac, eac: &Iac) -> (Vec<String>, Vec<Diagnostic>) {
     let mut merging = ChartMerge {
         variables: shared_variables(iac, eac),

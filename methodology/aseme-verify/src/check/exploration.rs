@@ -1,7 +1,7 @@
 //! Checks by exploration ([`yase_explore`]): M04 for JOIN, M12 to M15, M21, M22 and M26 to M28.
 //!
 //! Guards on data are free inputs as far as they are satisfiable together; activities return,
-//! events arrive and timers expire at any time. What is found unreachable is therefore unreachable
+//! events arrive and timers expire at any time. A state found unreachable is therefore unreachable
 //! in every environment. This holds only for a complete exploration; an incomplete one reports only
 //! what it found.
 
@@ -319,7 +319,7 @@ impl ExplorationCheck<'_> {
         Some(Self::with_trace(found, &self.found.trace_to(index)))
     }
 
-    /// M24. Where something else is wrong, what follows from it is not said again.
+    /// M24. Consequences of other findings are not reported again.
     fn differences(&self, settings: &CheckSettings) -> Vec<Finding> {
         let Some(liveness) = &self.subject.liveness else { return Vec::new() };
         let chart = &self.subject.chart;

@@ -3,8 +3,8 @@
 //! An infinite trace satisfies formulas if each required `x~` is begun infinitely often: a
 //! generalised Büchi condition with a set for each `x~`. A chart that waits for its environment has
 //! traces that violate it in any case: a ball may never come. The check is therefore weaker: after
-//! every finite trace it must still be possible to satisfy the condition. Where it is not, the
-//! chart itself has cut something short.
+//! every finite trace it must still be possible to satisfy the condition. If it is not, the chart
+//! itself has cut something short.
 //!
 //! The other direction follows from finite traces: an infinite trace is one of the chart if all its
 //! prefixes are, since a chart has finitely many states.

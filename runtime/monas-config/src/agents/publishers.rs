@@ -12,8 +12,8 @@ use monas_core::activity::Activity;
 
 impl AgentReader<'_> {
     /// Warns of topics that a chart reads although no activity of the host's agents publishes them,
-    /// if another activity of the program would. What none publishes comes from the body, the world
-    /// or the runtime, or is reported by `monas model check`.
+    /// if another activity of the program would. A topic that none publishes comes from the body,
+    /// the world or the runtime, or is reported by `monas model check`.
     pub(super) fn unpublished(&mut self, elements: &[Element]) {
         let Some(published) = self.published() else { return };
         let Ok(vocabulary) = self.registry.vocabulary() else { return };

@@ -6,7 +6,7 @@
 //! multiplies the weight of each hypothesis by its likelihood, of which a small part is left to
 //! outliers. Two landmarks in one image give a pose of their own; if no hypothesis is near it, it
 //! becomes a new one (sensor resetting: Lenser, Veloso, ICRA 2000), so that a robot which was
-//! carried away finds itself. Where the goals look alike, the side on which the robot last knew its
+//! carried away finds itself. If the goals look alike, the side on which the robot last knew its
 //! pose decides between that pose and the one turned by half a turn.
 
 use std::f64::consts::PI;

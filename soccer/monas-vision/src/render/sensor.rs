@@ -55,7 +55,7 @@ impl Sensor {
         self.kernel.iter_mut().for_each(|weight| *weight /= sum);
     }
 
-    /// Blurs along rows. What is beyond an edge looks like the edge.
+    /// Blurs along rows. Pixels beyond an edge look like the edge.
     fn blur_rows(&mut self, colours: &mut Vec<Rgb>, width: usize) {
         let reach = self.kernel.len() / 2;
         self.blurred.clear();

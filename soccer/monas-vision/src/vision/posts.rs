@@ -16,7 +16,7 @@ const LEAST_WHITE: f64 = 0.62;
 /// The search for goal posts.
 ///
 /// Coloured posts are higher than the camera, so each crosses the horizon, or leaves the image at
-/// its top. What is behind a white post above the field may be white too, so white posts are
+/// its top. The background of a white post above the field may be white too, so white posts are
 /// searched where they cross the border of the field.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct PostScan {

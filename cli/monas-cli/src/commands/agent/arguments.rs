@@ -162,7 +162,7 @@ pub(crate) enum AgentCommand {
     /// changes made since.
     #[command(after_help = "Example: monas agent save config/agents.xml")]
     Save {
-        /// Where to write it; standard output if not given.
+        /// The file to write; standard output if not given.
         #[arg(value_hint = ValueHint::FilePath)]
         file: Option<PathBuf>,
         #[command(flatten)]

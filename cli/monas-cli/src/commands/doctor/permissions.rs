@@ -24,8 +24,8 @@ fn real_time() -> CheckResult {
     })
 }
 
-/// What is permitted, by trying a priority, from the highest that the limits allow on: what the
-/// system grants decides, since the limits do not concern privileged users.
+/// The highest permitted priority, found by trying from the highest that the limits allow: the
+/// system decides, since the limits do not concern privileged users.
 fn real_time_by(permits: impl Fn(u8) -> bool, limit: impl Fn() -> Option<u64>) -> CheckResult {
     let most = match permits(99) {
         true => Some(99),
@@ -111,7 +111,7 @@ mod tests {
         assert_eq!(by(40, Some(40)).state, CheckStatus::Ok);
         let refused = [by(0, Some(0)), by(0, Some(99)), by(0, None)];
         assert!(refused.iter().all(|found| found.state == CheckStatus::Warning));
-        // What is reported holds for this process.
+        // The report agrees with the permissions of this process.
         assert_eq!(real_time().state == CheckStatus::Ok, monas::permits_real_time(1));
     }
 

@@ -122,7 +122,7 @@ fn checked(path: &Path, settings: &CheckSettings, all: bool) -> CheckReport {
     report
 }
 
-/// What is said of checks that Ctrl-C or the time limit ended.
+/// The note on checks that Ctrl-C or the time limit ended.
 const STOPPED: &str = ", checks not finished (stopped, or the limit of time; see `--seconds`)";
 
 /// Prints the findings of all files, and, without properties, one line for each file without

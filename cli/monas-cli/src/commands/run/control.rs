@@ -99,7 +99,7 @@ mod socket {
             (Some(_), Err(error)) => Err(CommandFailure::failed(format, error)),
             (None, Ok(folder)) => {
                 let socket = by_default(&folder, arguments);
-                // Where tools look is known only if the system says so.
+                // Tools find a default only where the system defines a runtime folder.
                 let is_said = runtime_folder().is_none();
                 if let Some(socket) = socket.as_ref().filter(|_| is_said && format == Format::Text) {
                     writeln!(

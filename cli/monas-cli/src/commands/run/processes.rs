@@ -40,12 +40,12 @@ struct RobotProcess {
 /// A process that has been started.
 struct Running {
     child: Child,
-    /// What it writes as results.
+    /// The file for its results.
     results: NamedTempFile,
     clock: WallClock,
 }
 
-/// What the process of a robot has written as its results.
+/// The results that the process of a robot has written.
 pub(super) struct RobotResults {
     host: String,
     starts: u32,

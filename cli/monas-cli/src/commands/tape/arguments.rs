@@ -67,7 +67,8 @@ pub(crate) enum TapeCommand {
         #[command(flatten)]
         format: FormatArgument,
     },
-    /// Merge several tapes into one, ordered by time. What several of them contain is written once.
+    /// Merge several tapes into one, ordered by time. Messages that several of them contain are
+    /// written once.
     #[command(after_help = "Example: monas tape merge one.mcap two.mcap -o both.mcap")]
     Merge {
         /// The tapes.

@@ -18,7 +18,7 @@ const IDLE: f64 = 0.2;
 pub(crate) struct Metrics {
     pub(crate) run: String,
     pub(crate) now: Duration,
-    /// What endangers the run's results.
+    /// Conditions that endanger the run's results.
     pub(crate) alarms: Vec<String>,
     /// Highest load first.
     pub(crate) agents: Vec<AgentFigures>,
@@ -140,7 +140,7 @@ fn agent(entry: &AgentEntry, before: Option<&AgentEntry>, rate: &impl Fn(u64) ->
         false => one.load.unwrap_or_default(),
     });
     let beside: f64 = beside.sum();
-    // Steps of charts are measured in processor time. Where it is not measured, the load of a
+    // Steps of charts are measured in processor time. If it is not measured, the load of a
     // list's cycles is unknown.
     let has_list = activities.iter().any(|one| one.entry.state.is_empty());
     let each = entry.cycle_time.as_ref().and_then(|times| match processor_time(times) {
