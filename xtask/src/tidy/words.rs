@@ -31,13 +31,21 @@ const BANNED: [&str; 22] = [
     "in the making",
 ];
 
+/// Not at the beginning of a comment, which names its subject: "its kind", not "what it is".
+const QUESTIONS: [&str; 2] = ["What ", "Who "];
+
 pub(crate) fn measures(workspace: &Workspace) -> Vec<Measure> {
     Measure::by_owner(workspace, Check::Words, 0, check_file)
 }
 
 fn check_file(file: &TextFile) -> Vec<TidyFinding> {
+    let is_code = file.path.extension().is_some_and(|extension| extension != "md");
     let mut findings = Vec::new();
     for line in prose(file) {
+        if is_code && QUESTIONS.iter().any(|word| line.text.starts_with(word)) {
+            let message = "a comment names its subject and does not ask for it";
+            findings.push(TidyFinding::new(&file.path, line.number, message));
+        }
         findings.extend(banned(&line.text).map(|word| {
             TidyFinding::new(&file.path, line.number, format!("`{word}`: use plain technical English"))
         }));
@@ -62,6 +70,14 @@ mod tests {
         let found = check_file(&TextFile { path: "a.rs".into(), text: text.into() });
         assert_eq!(found.len(), 1);
         assert_eq!(found[0].to_string(), "a.rs:2: `whoever`: use plain technical English");
+    }
+
+    #[test]
+    fn comments_that_ask_for_the_thing_are_found() {
+        let found =
+            |path: &str, text: &str| check_file(&TextFile { path: path.into(), text: text.into() }).len();
+        assert_eq!(found("a.rs", "/// What it is.\nstruct A; // The kind: what it is.\n"), 1);
+        assert_eq!(found("a.md", "What differs is the order.\n"), 0);
     }
 
     #[test]

@@ -69,7 +69,7 @@ pub struct Everything {
 }
 /// Nested message and enum types in `Everything`.
 pub mod everything {
-    /// What happened to a ball.
+    /// An event of a ball.
     #[derive(Clone, PartialEq, ::narukom::prost::Message)]
     #[prost(prost_path = "::narukom::prost")]
     pub struct Touch {
@@ -146,7 +146,7 @@ pub struct Lists {
 #[derive(Clone, Copy, PartialEq, Eq, Hash, ::narukom::prost::Message)]
 #[prost(prost_path = "::narukom::prost")]
 pub struct Nothing {}
-/// What a robot is busy with.
+/// The task of a robot.
 #[derive(
     Clone,
     Copy,
