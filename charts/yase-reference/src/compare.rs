@@ -18,7 +18,7 @@ use crate::stepper::Stepper;
 use crate::test_host::{TestHost, vocabulary};
 
 /// Result of a case.
-pub(crate) enum Verdict {
+pub(crate) enum CaseResult {
     /// Both logs are equal.
     Same(Vec<String>),
     Different(Difference),
@@ -31,11 +31,11 @@ pub(crate) struct Difference {
     pub found: Vec<String>,
 }
 
-pub(crate) fn judge(case: &Case) -> Verdict {
+pub(crate) fn judge(case: &Case) -> CaseResult {
     let chart = match case.chart.compile_with(&vocabulary(), case.semantics) {
         Ok(chart) => Arc::new(chart),
         Err(found) => {
-            return Verdict::Refused(found.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"));
+            return CaseResult::Refused(found.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"));
         }
     };
     let timers = chart.timers().map(|(region, name)| (region, name.to_owned())).collect();
@@ -46,7 +46,7 @@ pub(crate) fn judge(case: &Case) -> Verdict {
         [by_machine(case, machine.clone(), false), by_machine(case, ByMicroSteps(machine.clone()), false)]
     {
         if expected != found {
-            return Verdict::Different(Difference { expected, found });
+            return CaseResult::Different(Difference { expected, found });
         }
     }
     // A machine without an observer records no micro-steps: everything else must be equal.
@@ -54,8 +54,8 @@ pub(crate) fn judge(case: &Case) -> Verdict {
     let reported: Vec<String> = expected.iter().filter(|line| !is_micro_step(line)).cloned().collect();
     let found = by_machine(case, machine, true);
     match reported == found {
-        true => Verdict::Same(expected),
-        false => Verdict::Different(Difference { expected: reported, found }),
+        true => CaseResult::Same(expected),
+        false => CaseResult::Different(Difference { expected: reported, found }),
     }
 }
 
@@ -66,16 +66,18 @@ fn host(case: &Case) -> TestHost {
 fn by_reference(case: &Case, timers: Vec<(ScopeId, String)>) -> Vec<String> {
     let mut host = host(case);
     let chooser = ReferenceChooser::new(case.policy.clone());
-    let mut watched =
-        Watched { inner: Stepper::new(&case.chart, case.semantics, chooser, timers), chart: &case.chart };
+    let mut watched = LoggingInterpreter {
+        inner: Stepper::new(&case.chart, case.semantics, chooser, timers),
+        chart: &case.chart,
+    };
     script::run(&mut watched, &case.script, &mut host);
     host.say(format!("asked {:?}", watched.inner.chooser.reported()));
     normal(host.log)
 }
 
-fn by_machine<M: Asked>(case: &Case, machine: M, silent: bool) -> Vec<String> {
+fn by_machine<M: SteppedMachine>(case: &Case, machine: M, silent: bool) -> Vec<String> {
     let mut host = TestHost { silent, ..host(case) };
-    let mut watched = Watched { inner: machine, chart: &case.chart };
+    let mut watched = LoggingInterpreter { inner: machine, chart: &case.chart };
     script::run(&mut watched, &case.script, &mut host);
     host.say(format!("asked {:?}", watched.inner.machine().chooser().choices()));
     normal(host.log)
@@ -90,7 +92,7 @@ fn chooser(policy: &ChoicePolicy) -> Chooser {
 }
 
 /// An interpreter that also logs its configuration after each step.
-struct Watched<'c, I> {
+struct LoggingInterpreter<'c, I> {
     inner: I,
     chart: &'c Statechart,
 }
@@ -105,30 +107,30 @@ impl Configured for Stepper<'_> {
     }
 }
 
-impl<M: Asked> Configured for M {
+impl<M: SteppedMachine> Configured for M {
     fn has(&self, node: NodeId) -> bool {
         self.machine().is_active(node)
     }
 }
 
 /// A machine, however it is stepped.
-trait Asked: Interpreter {
+trait SteppedMachine: Interpreter {
     fn machine(&self) -> &Machine;
 }
 
-impl Asked for Machine {
+impl SteppedMachine for Machine {
     fn machine(&self) -> &Machine {
         self
     }
 }
 
-impl Asked for ByMicroSteps {
+impl SteppedMachine for ByMicroSteps {
     fn machine(&self) -> &Machine {
         &self.0
     }
 }
 
-impl<I: Configured> Watched<'_, I> {
+impl<I: Configured> LoggingInterpreter<'_, I> {
     fn show(&self, host: &mut TestHost) {
         let active = self.chart.nodes().filter(|(id, _)| self.inner.has(*id));
         let numbers: Vec<String> = active.map(|(id, _)| id.0.to_string()).collect();
@@ -136,7 +138,7 @@ impl<I: Configured> Watched<'_, I> {
     }
 }
 
-impl<I: Configured> Interpreter for Watched<'_, I> {
+impl<I: Configured> Interpreter for LoggingInterpreter<'_, I> {
     fn start(&mut self, now: Timestamp, host: &mut TestHost) {
         self.inner.start(now, host);
         self.show(host);

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::compare::{Verdict, describe, judge};
+use crate::compare::{CaseResult, describe, judge};
 use crate::histogram::Histogram;
 use crate::random::Case;
 use crate::shrink::shrink;
@@ -33,9 +33,9 @@ pub fn compare(numbers: Range<u64>) -> Found {
     for number in numbers {
         let case = Case::numbered(number);
         match judge(&case) {
-            Verdict::Same(lines) => found.histogram.count(&case, &lines),
-            Verdict::Refused(why) => found.refused.push(format!("case {number}: {why}")),
-            Verdict::Different(_) => {
+            CaseResult::Same(lines) => found.histogram.count(&case, &lines),
+            CaseResult::Refused(why) => found.refused.push(format!("case {number}: {why}")),
+            CaseResult::Different(_) => {
                 found.difference = Some(format!("case {number}\n{}", smallest(&case)));
                 return found;
             }
@@ -47,7 +47,7 @@ pub fn compare(numbers: Range<u64>) -> Found {
 fn smallest(case: &Case) -> String {
     let small = shrink(case);
     match judge(&small) {
-        Verdict::Different(difference) => describe(&small, &difference),
+        CaseResult::Different(difference) => describe(&small, &difference),
         _ => "it differs no more".to_owned(),
     }
 }

@@ -2,7 +2,7 @@
 
 use yase::statechart::{Node, NodeId, NodeKind, Statechart, Transition};
 
-use crate::compare::{Verdict, judge};
+use crate::compare::{CaseResult, judge};
 use crate::random::Case;
 
 pub(crate) fn shrink(case: &Case) -> Case {
@@ -17,7 +17,7 @@ pub(crate) fn shrink(case: &Case) -> Case {
 }
 
 fn differs(case: &Case) -> bool {
-    matches!(judge(case), Verdict::Different(_))
+    matches!(judge(case), CaseResult::Different(_))
 }
 
 /// Cases with one element fewer, the largest elements removed first.

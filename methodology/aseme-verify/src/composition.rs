@@ -33,7 +33,7 @@ use yase::{Diagnostic, Source, Span};
 use crate::abstraction::Abstraction;
 use crate::check_settings::CheckSettings;
 use crate::finding::Finding;
-use composed_robot::{Behaviour, ComposedRobot, Neighbourhood, ReceivedMessage, SentMessage};
+use composed_robot::{Behaviour, ComposedRobot, ReceivedMessage, RobotDeployment, SentMessage};
 use deadlock::Deadlock;
 use message_names::MessageUse;
 use product::{GlobalProduct, MessageRoute};
@@ -159,8 +159,8 @@ fn robots(
     let robots = models.iter().zip(charts).enumerate().map(|(number, ((name, source), chart))| {
         let beside = (0..models.len()).filter(|&other| other != number && hosts[other] == hosts[number]);
         let beside = beside.flat_map(|other| sent[other].iter().map(|it| it.word.clone())).collect();
-        let neighbourhood = Neighbourhood { host: hosts[number], hosts, beside };
-        ComposedRobot::new(name, source, chart, neighbourhood, world)
+        let deployment = RobotDeployment { host: hosts[number], hosts, beside };
+        ComposedRobot::new(name, source, chart, deployment, world)
     });
     Ok(robots.collect())
 }

@@ -23,10 +23,10 @@ pub struct BodyKind {
     /// The capabilities that a body with these settings lacks, or has only in part, compared with
     /// the bodies of the embedded field. They are reported before a run, with the activities
     /// concerned.
-    pub limits: fn(&BodySettings, Surroundings) -> Vec<BodyLimit>,
+    pub limits: fn(&BodySettings, BodyEnvironment) -> Vec<BodyLimit>,
     /// Faults of settings whose options are each of their kind: contradictory values, files with
     /// wrong contents. A configuration with a fault is refused before a run.
-    pub faults: fn(&BodySettings, Surroundings) -> Vec<BodyFault>,
+    pub faults: fn(&BodySettings, BodyEnvironment) -> Vec<BodyFault>,
     /// Opens a body of this kind.
     pub open: OpenBody,
     /// Offers a body of a simulated world at an address through the interface of this kind, for
@@ -67,7 +67,7 @@ impl BodyLimit {
 
 /// The environment of a body.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub enum Surroundings {
+pub enum BodyEnvironment {
     /// A place of its own: reality, or a simulation that the kind of the body reaches by itself.
     Own,
     /// The simulated world of a match, which may stand in for what the interface of the body lacks.
@@ -167,12 +167,12 @@ impl BodySettings {
     }
 
     /// The limits of the body there, see [`BodyKind::limits`]; empty for an unknown kind.
-    pub fn limits(&self, surroundings: Surroundings) -> Vec<BodyLimit> {
+    pub fn limits(&self, surroundings: BodyEnvironment) -> Vec<BodyLimit> {
         BodyKind::named(&self.kind).map(|kind| (kind.limits)(self, surroundings)).unwrap_or_default()
     }
 
     /// The faults of the settings there, see [`BodyKind::faults`]; empty for an unknown kind.
-    pub fn faults(&self, surroundings: Surroundings) -> Vec<BodyFault> {
+    pub fn faults(&self, surroundings: BodyEnvironment) -> Vec<BodyFault> {
         BodyKind::named(&self.kind).map(|kind| (kind.faults)(self, surroundings)).unwrap_or_default()
     }
 

@@ -55,8 +55,8 @@ narukom::include_messages!("monas.robot");
 
 pub use anatomy::{Anatomy, Camera, Joint, Limits, Link, LinkMotion};
 pub use body_kind::{
-    BodyKind, BodyLimit, BodySettings, BodySite, CameraOutput, Capability, IMAGE_WIDTHS, OpenBody,
-    Surroundings,
+    BodyEnvironment, BodyKind, BodyLimit, BodySettings, BodySite, CameraOutput, Capability, IMAGE_WIDTHS,
+    OpenBody,
 };
 pub use body_option::{BodyFault, BodyOption, OptionKind};
 pub use fall_detector::FallDetector;

@@ -56,7 +56,7 @@ use std::path::Path;
 
 use monas_robot::topics::{ANNOUNCEMENT, HEARD, IMAGES, SAID, SIGHTINGS};
 use monas_robot::{
-    BodyFault, BodyKind, BodyLimit, BodySettings, BodySite, CameraOutput, Robot, Surroundings,
+    BodyEnvironment, BodyFault, BodyKind, BodyLimit, BodySettings, BodySite, CameraOutput, Robot,
 };
 
 pub use anatomy::{NaoJoint, anatomy, links};
@@ -81,7 +81,7 @@ monas_robot::body_kind!(BodyKind {
 });
 
 /// Missing cameras, and the data that LoLA lacks and simulations offer on sockets of their own.
-fn limits(settings: &BodySettings, surroundings: Surroundings) -> Vec<BodyLimit> {
+fn limits(settings: &BodySettings, surroundings: BodyEnvironment) -> Vec<BodyLimit> {
     if !has_cameras(settings, surroundings) {
         return Vec::new();
     }
@@ -105,7 +105,7 @@ fn limits(settings: &BodySettings, surroundings: Surroundings) -> Vec<BodyLimit>
 }
 
 /// Images that the cameras of a robot do not have; those of a simulation have other widths.
-fn faults(settings: &BodySettings, surroundings: Surroundings) -> Vec<BodyFault> {
+fn faults(settings: &BodySettings, surroundings: BodyEnvironment) -> Vec<BodyFault> {
     match (settings.vision, has_cameras(settings, surroundings)) {
         (CameraOutput::Images, true) => {
             cameras::check_width(settings.image_width).err().into_iter().collect()
@@ -115,9 +115,9 @@ fn faults(settings: &BodySettings, surroundings: Surroundings) -> Vec<BodyFault>
 }
 
 /// Whether it sees with cameras of its own, and not what a simulation shows it.
-fn has_cameras(settings: &BodySettings, surroundings: Surroundings) -> bool {
+fn has_cameras(settings: &BodySettings, surroundings: BodyEnvironment) -> bool {
     let lola = settings.address.as_deref().unwrap_or(lola::SOCKET);
-    surroundings == Surroundings::Own && !side_channels::are_offered(Path::new(lola))
+    surroundings == BodyEnvironment::Own && !side_channels::are_offered(Path::new(lola))
 }
 
 /// Opens a Nao: in a simulated world over its body there, else at a socket.

@@ -186,12 +186,12 @@ impl Booster {
     }
 
     /// Sends the commands that wait. In lockstep the server has sent percepts and, after a cycle
-    /// without sights, its state to the monitor: it waits for the agent, and takes up the commands
+    /// without vision, its state to the monitor: it waits for the agent, and takes up the commands
     /// in the next cycle. That it has read them shows when it closes the connection.
     fn send_instructions(&mut self) -> Result<(), Error> {
         self.taking_in = self.taking_in.saturating_sub(1);
         let percept = self.control.percept();
-        let waits = self.lockstep && (percept.has_sights || self.taking_in > 0);
+        let waits = self.lockstep && (percept.has_vision || self.taking_in > 0);
         if waits || self.instructions.is_empty() {
             return Ok(());
         }

@@ -13,7 +13,7 @@ use crate::inertia::Inertia;
 use crate::kick::{Kick, KickParameters};
 use crate::kinematics::{Foot, Stance, inclination};
 use crate::match_rules::MatchRules;
-use crate::percept::{Percept, Sight};
+use crate::percept::{CameraObject, Percept};
 use crate::walk::{Gait, Motion, Motors, Ramp, WalkEngine, WalkVelocity};
 
 /// The motion of the robot.
@@ -105,7 +105,7 @@ impl BoosterControl {
         if !self.falls.is_inclined() {
             self.measure_step(&before);
         }
-        if self.percept.has_sights {
+        if self.percept.has_vision {
             self.look(rules);
         }
         Ok(())
@@ -144,19 +144,19 @@ impl BoosterControl {
         image.objects.clear();
         image.head_yaw = self.percept.positions[HEAD_YAW];
         image.head_pitch = self.percept.positions[HEAD_PITCH];
-        for sight in &self.percept.sights {
-            let (kind, colour, at) = match sight {
-                Sight::Ball(at) => (ObjectKind::Ball, monas_robot::Colour::NoColour, at),
-                Sight::Post { goal, is_upper, at } => {
+        for object in &self.percept.objects {
+            let (kind, colour, at) = match object {
+                CameraObject::Ball(at) => (ObjectKind::Ball, monas_robot::Colour::NoColour, at),
+                CameraObject::Post { goal, is_upper, at } => {
                     let (kind, colour) = rules.post(*goal, *is_upper);
                     (kind, colour, at)
                 }
-                Sight::Robot { team, number, at } => match rules.robot(team, *number) {
+                CameraObject::Robot { team, number, at } => match rules.robot(team, *number) {
                     Some(colour) => (ObjectKind::Robot, colour, at),
                     None => continue,
                 },
                 // Bodies report no marks of the lines.
-                Sight::Mark { .. } => continue,
+                CameraObject::Mark { .. } => continue,
             };
             let place = self.stance.on_ground(&self.robot.seen_in_torso(at, &self.percept.positions));
             image.objects.push(Sighting {

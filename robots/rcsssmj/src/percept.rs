@@ -7,7 +7,7 @@ use crate::expression::Items;
 use crate::humanoid::{Humanoid, JointValues};
 
 /// The percepts of a cycle, in SI units. It is reused: what a message does not hold keeps its
-/// value, except for sights.
+/// value, except for the objects of vision.
 #[derive(Clone, PartialEq, Debug, Default)]
 pub struct Percept {
     /// The time of the server, s.
@@ -27,9 +27,9 @@ pub struct Percept {
     /// Angular velocities of the joints, rad/s.
     pub velocities: JointValues,
     /// Whether the message holds what the camera sees, as every second one does.
-    pub has_sights: bool,
+    pub has_vision: bool,
     /// The objects that the camera sees.
-    pub sights: Vec<Sight>,
+    pub objects: Vec<CameraObject>,
 }
 
 /// The state of the game as all players know it.
@@ -146,7 +146,7 @@ pub struct Polar {
 
 /// An object that the camera sees.
 #[derive(Clone, PartialEq, Debug)]
-pub enum Sight {
+pub enum CameraObject {
     /// The ball: its middle.
     Ball(Polar),
     /// The top of a goal post.
@@ -184,8 +184,8 @@ impl Percept {
     /// The parentheses are not balanced, or a percept does not have the form of its kind. Percepts
     /// read before it remain.
     pub fn decode(&mut self, message: &[u8], robot: &Humanoid) -> Result<(), Error> {
-        self.has_sights = false;
-        self.sights.clear();
+        self.has_vision = false;
+        self.objects.clear();
         let mut percepts = Items::of(message)?;
         while let Some((kind, content)) = percepts.next_named() {
             self.decode_percept(kind, content, robot).ok_or_else(|| {
@@ -214,9 +214,9 @@ impl Percept {
                 }
             }
             b"See" => {
-                self.has_sights = true;
+                self.has_vision = true;
                 while let Some((name, object)) = content.next_named() {
-                    self.sights.push(sight(name, object)?);
+                    self.objects.push(camera_object(name, object)?);
                 }
             }
             _ => {}
@@ -242,22 +242,22 @@ impl Game {
     }
 }
 
-fn sight(name: &[u8], object: Items<'_>) -> Option<Sight> {
+fn camera_object(name: &[u8], object: Items<'_>) -> Option<CameraObject> {
     if name == b"P" {
         return robot(object);
     }
     let at = polar(object)?;
     Some(match name {
-        b"B" => Sight::Ball(at),
-        b"g_lup" => Sight::Post { goal: Side::Left, is_upper: true, at },
-        b"g_llp" => Sight::Post { goal: Side::Left, is_upper: false, at },
-        b"g_rup" => Sight::Post { goal: Side::Right, is_upper: true, at },
-        b"g_rlp" => Sight::Post { goal: Side::Right, is_upper: false, at },
-        _ => Sight::Mark { name: text(name)?.to_owned(), at },
+        b"B" => CameraObject::Ball(at),
+        b"g_lup" => CameraObject::Post { goal: Side::Left, is_upper: true, at },
+        b"g_llp" => CameraObject::Post { goal: Side::Left, is_upper: false, at },
+        b"g_rup" => CameraObject::Post { goal: Side::Right, is_upper: true, at },
+        b"g_rlp" => CameraObject::Post { goal: Side::Right, is_upper: false, at },
+        _ => CameraObject::Mark { name: text(name)?.to_owned(), at },
     })
 }
 
-fn robot(mut object: Items<'_>) -> Option<Sight> {
+fn robot(mut object: Items<'_>) -> Option<CameraObject> {
     let team = text(object.find_named(b"team")?.word()?)?.to_owned();
     let number = whole(&mut object.find_named(b"id")?)?;
     let mut lowest: Option<Polar> = None;
@@ -270,7 +270,7 @@ fn robot(mut object: Items<'_>) -> Option<Sight> {
             lowest = Some(at);
         }
     }
-    Some(Sight::Robot { team, number, at: lowest? })
+    Some(CameraObject::Robot { team, number, at: lowest? })
 }
 
 fn polar(object: Items<'_>) -> Option<Polar> {
@@ -339,22 +339,22 @@ mod tests {
             elevation: radians(elevation),
         };
         let expected = [
-            Sight::Ball(at(4.98, 90.0, -45.0)),
-            Sight::Post { goal: Side::Right, is_upper: false, at: at(32.4, -3.2, 1.3) },
-            Sight::Mark { name: "t_cuf".into(), at: at(4.3, 46.0, -14.7) },
-            Sight::Robot { team: "Red".into(), number: 3, at: at(5.1, 1.0, -12.0) },
+            CameraObject::Ball(at(4.98, 90.0, -45.0)),
+            CameraObject::Post { goal: Side::Right, is_upper: false, at: at(32.4, -3.2, 1.3) },
+            CameraObject::Mark { name: "t_cuf".into(), at: at(4.3, 46.0, -14.7) },
+            CameraObject::Robot { team: "Red".into(), number: 3, at: at(5.1, 1.0, -12.0) },
         ];
-        assert_eq!((percept.has_sights, &percept.sights[..]), (true, &expected[..]));
+        assert_eq!((percept.has_vision, &percept.objects[..]), (true, &expected[..]));
     }
 
     #[test]
-    fn what_a_message_leaves_out_stays_except_sights() {
+    fn data_missing_in_a_message_stay_except_objects_of_vision() {
         let mut percept = read(TEXT).unwrap();
         percept.decode(b"(time (now 4.19))", &T1).unwrap();
         assert_eq!((percept.time, percept.game.left_score), (4.19, 2));
-        assert!(!percept.has_sights && percept.sights.is_empty());
+        assert!(!percept.has_vision && percept.objects.is_empty());
         percept.decode(b"(See )", &T1).unwrap();
-        assert!(percept.has_sights, "a camera that sees nothing has looked");
+        assert!(percept.has_vision, "a camera that sees nothing has looked");
     }
 
     #[test]
@@ -389,7 +389,7 @@ mod tests {
         let above = Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().map(|folder| folder.join("shared"));
         let files = |folder: PathBuf| std::fs::read_dir(folder.join("robots/rcsssmj")).ok();
         let Some(files) = named.into_iter().chain(above).find_map(files) else { return };
-        let mut sights = [0, 0];
+        let mut objects = [0, 0];
         for file in files.map(|file| file.unwrap().path()) {
             let name = file.file_name().unwrap().to_string_lossy().into_owned();
             let is_of = |robot: &&Humanoid| name.starts_with(&format!("percept_{}_", robot.name()));
@@ -403,9 +403,9 @@ mod tests {
             let sent = percept.positions.iter().filter(|angle| angle.abs() < 4.0).count();
             assert_eq!(sent, robot.joint_count(), "{name}");
             assert_eq!(percept.positions[..sent].iter().filter(|angle| **angle == 1e9).count(), 0, "{name}");
-            sights[usize::from(*robot == K1)] += percept.sights.len();
+            objects[usize::from(*robot == K1)] += percept.objects.len();
         }
-        assert!(sights.iter().all(|sights| *sights > 20), "{sights:?}");
+        assert!(objects.iter().all(|count| *count > 20), "{objects:?}");
     }
 
     proptest! {

@@ -10,8 +10,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use monas_robot::{
-    BodyKind, BodyOption, BodySettings, CameraOutput, Disturbances, FieldColours, IMAGE_WIDTHS, OptionKind,
-    Surroundings,
+    BodyEnvironment, BodyKind, BodyOption, BodySettings, CameraOutput, Disturbances, FieldColours,
+    IMAGE_WIDTHS, OptionKind,
 };
 use yase::{Diagnostic, Source};
 
@@ -83,7 +83,7 @@ pub fn read_without_loading(
 ) -> (HostSetup, Vec<Diagnostic>) {
     let (elements, mut diagnostics) = Grammar::agents().read(source);
     let loading = ModuleLoading::Refused;
-    let setup = assemble_with(&elements, path, registry, Surroundings::Own, loading, &mut diagnostics);
+    let setup = assemble_with(&elements, path, registry, BodyEnvironment::Own, loading, &mut diagnostics);
     sort(&mut diagnostics);
     (setup, diagnostics)
 }
@@ -94,7 +94,7 @@ fn assembled(
     registry: &Registry,
     mut diagnostics: Vec<Diagnostic>,
 ) -> (HostSetup, Vec<Diagnostic>) {
-    let setup = assemble(elements, path, registry, Surroundings::Own, &mut diagnostics);
+    let setup = assemble(elements, path, registry, BodyEnvironment::Own, &mut diagnostics);
     sort(&mut diagnostics);
     (setup, diagnostics)
 }
@@ -105,7 +105,7 @@ pub fn assemble(
     elements: &[Element],
     path: &Path,
     registry: &Registry,
-    surroundings: Surroundings,
+    surroundings: BodyEnvironment,
     diagnostics: &mut Vec<Diagnostic>,
 ) -> HostSetup {
     assemble_with(elements, path, registry, surroundings, ModuleLoading::Allowed, diagnostics)
@@ -122,7 +122,7 @@ fn assemble_with(
     elements: &[Element],
     path: &Path,
     registry: &Registry,
-    surroundings: Surroundings,
+    surroundings: BodyEnvironment,
     loading: ModuleLoading,
     diagnostics: &mut Vec<Diagnostic>,
 ) -> HostSetup {
@@ -164,7 +164,7 @@ impl AgentReader<'_> {
         }
     }
 
-    fn body(&mut self, elements: &[Element], surroundings: Surroundings) {
+    fn body(&mut self, elements: &[Element], surroundings: BodyEnvironment) {
         for element in elements {
             if element.is("agents") {
                 self.body(element.children(), surroundings);
@@ -313,7 +313,7 @@ impl AgentReader<'_> {
     }
 
     /// Reports what the kind of the body finds wrong with settings that have no other errors.
-    fn body_faults(&mut self, element: &Element, settings: &BodySettings, surroundings: Surroundings) {
+    fn body_faults(&mut self, element: &Element, settings: &BodySettings, surroundings: BodyEnvironment) {
         for fault in settings.faults(surroundings) {
             self.diagnostics.push(match element.attribute(fault.attribute) {
                 Some(given) => given.error("E0306", fault.message),

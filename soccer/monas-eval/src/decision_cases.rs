@@ -22,13 +22,13 @@ use crate::thresholds::player::*;
 
 /// The target of the head.
 #[derive(Clone, Copy, PartialEq, Debug)]
-pub(crate) enum Look {
+pub(crate) enum GazeTarget {
     Scan,
     At(Gaze),
 }
 
 /// The requests of a behaviour in one decision; none if it did not decide.
-pub(crate) type Requests = (Option<Look>, Option<DesiredMotion>);
+pub(crate) type Requests = (Option<GazeTarget>, Option<DesiredMotion>);
 
 /// A decision, by the name of the state in which the role ends.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -167,29 +167,29 @@ impl Case {
     /// The requests of the skills in the decision's states.
     fn requests(&self) -> Requests {
         let (field, pose, ball) = (game().field(), self.pose.field_from_robot(), self.ball.position());
-        let watch = Some(Look::At(HeadController::default().look_at(ball)));
+        let watch = Some(GazeTarget::At(HeadController::default().look_at(ball)));
         let inside = |walk: Walk| Some(DesiredMotion::Walk(keep_out(walk, &field, &pose)));
         let guard = GoalPositioning::default();
         let stand_at = |place| Some(DesiredMotion::Walk(guard.walk(&pose, &place)));
         let target = kick_target(&field, pose * ball, shot_target(&field, pose * ball, &[]));
         let target = pose.inverse_transform_point(&target);
         match self.decision {
-            Decision::ReturnToGoal => (Some(Look::Scan), stand_at(guard.place(&field, None))),
+            Decision::ReturnToGoal => (Some(GazeTarget::Scan), stand_at(guard.place(&field, None))),
             Decision::KeepGoal => (watch, stand_at(guard.place(&field, Some(pose * ball)))),
             Decision::StepAside => {
                 (watch, Some(DesiredMotion::Walk(guard.step_before(self.ball.crossing_y))))
             }
-            Decision::SearchBall => (Some(Look::Scan), None),
+            Decision::SearchBall => (Some(GazeTarget::Scan), None),
             Decision::TurnAround => {
-                (Some(Look::Scan), inside(Walk::turning(TURN.copysign(self.ball.bearing))))
+                (Some(GazeTarget::Scan), inside(Walk::turning(TURN.copysign(self.ball.bearing))))
             }
             Decision::WalkTowardsCentre => {
                 let centre = pose.inverse_transform_point(&Point2::origin());
-                (Some(Look::Scan), inside(stride_to(centre, centre.coords.norm())))
+                (Some(GazeTarget::Scan), inside(stride_to(centre, centre.coords.norm())))
             }
             Decision::LookAtGoal => {
                 let goal = pose.inverse_transform_point(&field.goal(Goal::Opponent));
-                (Some(Look::At(HeadController::default().look_at(goal))), None)
+                (Some(GazeTarget::At(HeadController::default().look_at(goal))), None)
             }
             Decision::WalkTowardsBall => (watch, inside(Approach::default().walk(ball, target, &[]))),
             Decision::AlignWithBall => {

@@ -146,7 +146,7 @@ pub fn evaluate(
     let mut idle = Vec::new();
     for seed in 1..=COST_SEEDS {
         let plan = alone(plan(settings, Methodology::Aseme, registry)?).without_agents(1);
-        let plan = plan.embody(|_, _, body| Box::new(IdleRobot(body)));
+        let plan = plan.replace_bodies(|_, _, body| Box::new(IdleRobot(body)));
         idle.push(measure(plan, seed, settings.length, processor_time)?);
     }
     let idle = median(&idle);
@@ -190,7 +190,7 @@ pub fn load(path: &Path, registry: &Registry) -> Result<MatchPlan, Error> {
 
 /// Builds the first team directly on its bodies: a goalie with the number 1, and attackers.
 pub fn direct_players(plan: MatchPlan) -> MatchPlan {
-    plan.embody(|team, number, body| match (team, number) {
+    plan.replace_bodies(|team, number, body| match (team, number) {
         (1, 1) => Box::new(DirectRobot::new(body, DirectGoalie::default())) as Box<dyn Robot>,
         (1, _) => Box::new(DirectRobot::new(body, DirectPlayer::default())),
         _ => body,
@@ -241,7 +241,7 @@ impl Robot for IdleRobot {
 /// The match against robots without programs.
 fn alone(plan: MatchPlan) -> MatchPlan {
     let idle = |team, _, body| if team == 2 { Box::new(IdleRobot(body)) } else { body };
-    plan.without_agents(2).embody(idle)
+    plan.without_agents(2).replace_bodies(idle)
 }
 
 /// The cost of a whole match.

@@ -83,7 +83,7 @@ impl OperatorCommand {
     /// There is no such command, or its arguments are wrong: what is right.
     pub fn parse(line: &str) -> Result<OperatorCommand, String> {
         let (name, arguments) = line.trim().split_once(char::is_whitespace).unwrap_or((line.trim(), ""));
-        let mut words = Words { rest: arguments.trim(), usage: usage(name) };
+        let mut words = CommandArguments { rest: arguments.trim(), usage: usage(name) };
         let command = match name {
             "initial" => OperatorCommand::Initial,
             "standby" => OperatorCommand::Standby,
@@ -135,12 +135,12 @@ fn usage(name: &str) -> &'static str {
 }
 
 /// The arguments of a command that have not been read.
-struct Words<'a> {
+struct CommandArguments<'a> {
     rest: &'a str,
     usage: &'static str,
 }
 
-impl Words<'_> {
+impl CommandArguments<'_> {
     fn number(&mut self, what: &str) -> Result<u8, String> {
         let (word, rest) = self.rest.split_once(char::is_whitespace).unwrap_or((self.rest, ""));
         let number = word.parse().map_err(|_| match word {

@@ -9,7 +9,7 @@ use monas::{
     Agent, ChartListener, ConfigurationBundle, HostConfig, LinkConfig, Module, Registry, RunHash, Talws,
 };
 use monas_gamecontroller::{ControlReceiver, ControlSender, RuleBook};
-use monas_robot::{BodySettings, ObjectSet, Robot, Surroundings};
+use monas_robot::{BodyEnvironment, BodySettings, ObjectSet, Robot};
 use monas_sim::{FieldGeometry, MatchRules, Physics, Radio, Setup, SharedField, SimulatedWorld, TeamSetup};
 use monas_tape::Tape;
 use yase::{Diagnostic, Source};
@@ -93,7 +93,7 @@ fn robots(
                 &resolved.elements,
                 &robot.role,
                 &registry,
-                Surroundings::Match,
+                BodyEnvironment::Match,
                 diagnostics,
             );
             let config::HostSetup { agents, links, modules, body, source } = setup;
@@ -144,13 +144,13 @@ pub struct MatchPlan {
     league: Option<LeagueSetup>,
     files: ConfigurationBundle,
     settings: String,
-    embody: Embody,
+    replace_bodies: BodyReplacement,
     /// The addresses of bodies of robots with processes of their own, given the host.
     addresses: Option<Addresses>,
 }
 
 /// Replaces the body of a robot, given its team and number.
-type Embody = Box<dyn Fn(u8, u8, Box<dyn Robot>) -> Box<dyn Robot> + Send>;
+type BodyReplacement = Box<dyn Fn(u8, u8, Box<dyn Robot>) -> Box<dyn Robot> + Send>;
 
 type Addresses = Box<dyn Fn(&str) -> String + Send>;
 
@@ -234,7 +234,7 @@ impl MatchPlan {
             league: None,
             files: ConfigurationBundle::default(),
             settings: String::new(),
-            embody: Box::new(|_, _, body| body),
+            replace_bodies: Box::new(|_, _, body| body),
             addresses: None,
         })
     }
@@ -286,12 +286,13 @@ impl MatchPlan {
     /// Replaces bodies on the field, given team, number and body: programs that command a body
     /// themselves take it over. Each replacement receives the body of the
     /// one before.
-    pub fn embody(
+    pub fn replace_bodies(
         mut self,
-        embody: impl Fn(u8, u8, Box<dyn Robot>) -> Box<dyn Robot> + Send + 'static,
+        replace_bodies: impl Fn(u8, u8, Box<dyn Robot>) -> Box<dyn Robot> + Send + 'static,
     ) -> MatchPlan {
-        let before = self.embody;
-        self.embody = Box::new(move |team, number, body| embody(team, number, before(team, number, body)));
+        let before = self.replace_bodies;
+        self.replace_bodies =
+            Box::new(move |team, number, body| replace_bodies(team, number, before(team, number, body)));
         self
     }
 
@@ -477,7 +478,7 @@ impl MatchPlan {
             if is_elsewhere {
                 (agents, links) = (Vec::new(), Vec::new());
             }
-            let body = body.map(|body| (self.embody)(team, number, body));
+            let body = body.map(|body| (self.replace_bodies)(team, number, body));
             let (team, number) = (team.into(), number.into());
             let configuration = source;
             talws.host(HostConfig { name: host, team, number, body, agents, links, modules, configuration });

@@ -93,7 +93,7 @@ fn real_frames_show_the_ball_and_no_robots_or_posts() {
             assert!(wrong.is_none(), "{file}, {pitch} degrees: a false ball: {wrong:?}");
             assert!(seen.posts.is_empty(), "{file}, {pitch} degrees: false posts: {:?}", seen.posts);
             for robot in &seen.robots {
-                let is_other = others.iter().any(|other| is_inside(&robot.sight.area, other));
+                let is_other = others.iter().any(|other| is_inside(&robot.detection.area, other));
                 assert!(is_other, "{file}, {pitch} degrees: a false robot: {robot:?}");
                 people += 1;
             }

@@ -2,8 +2,8 @@
 
 use monas_robot::{Colour, FieldColours, Image, Images, ObjectKind, ObjectSet, Sensors, Sighting, Sightings};
 use monas_vision::{
-    Camera, FieldObjects, GoalPaint, GoalPost, GroundPoint, HeadPose, Jersey, LineSegment, PostSide, Sight,
-    Vision,
+    Camera, Detection, FieldObjects, GoalPaint, GoalPost, GroundPoint, HeadPose, Jersey, LineSegment,
+    PostSide, Vision,
 };
 use nalgebra::Point2;
 
@@ -128,7 +128,7 @@ impl ImageInterpreter {
                 Jersey::Red => Colour::Red,
                 Jersey::Unknown => Colour::NoColour,
             };
-            sighting(ObjectKind::Robot, colour, &robot.sight)
+            sighting(ObjectKind::Robot, colour, &robot.detection)
         });
         for found in ball.chain(posts).chain(robots) {
             if !is_known(objects, &found) {
@@ -206,11 +206,16 @@ fn post(post: &GoalPost) -> Sighting {
         GoalPaint::Blue => Colour::Blue,
         GoalPaint::White => Colour::White,
     };
-    sighting(kind, colour, &post.sight)
+    sighting(kind, colour, &post.detection)
 }
 
-fn sighting(kind: ObjectKind, colour: Colour, sight: &Sight) -> Sighting {
-    Sighting { kind: kind.into(), bearing: sight.bearing, distance: sight.distance, colour: colour.into() }
+fn sighting(kind: ObjectKind, colour: Colour, detection: &Detection) -> Sighting {
+    Sighting {
+        kind: kind.into(),
+        bearing: detection.bearing,
+        distance: detection.distance,
+        colour: colour.into(),
+    }
 }
 
 #[cfg(test)]
@@ -267,15 +272,15 @@ mod tests {
 
     #[test]
     fn a_post_in_both_images_counts_once() {
-        let sight = |kind, bearing, colour: Colour| Sighting {
+        let detection = |kind, bearing, colour: Colour| Sighting {
             kind: i32::from(kind),
             bearing,
             distance: 2.0,
             colour: colour.into(),
         };
-        let known = sight(ObjectKind::SomePost, 0.2, Colour::Blue);
-        assert!(is_same(&known, &sight(ObjectKind::LeftPost, 0.25, Colour::Blue)));
-        assert!(!is_same(&known, &sight(ObjectKind::LeftPost, 0.25, Colour::Yellow)));
-        assert!(!is_same(&known, &sight(ObjectKind::LeftPost, 0.6, Colour::Blue)));
+        let known = detection(ObjectKind::SomePost, 0.2, Colour::Blue);
+        assert!(is_same(&known, &detection(ObjectKind::LeftPost, 0.25, Colour::Blue)));
+        assert!(!is_same(&known, &detection(ObjectKind::LeftPost, 0.25, Colour::Yellow)));
+        assert!(!is_same(&known, &detection(ObjectKind::LeftPost, 0.6, Colour::Blue)));
     }
 }

@@ -64,6 +64,6 @@ pub use image::{Image, rgb_of_yuv, yuv_of_rgb, yuv422_of_rgb};
 pub use objects::{BallPattern, FieldObjects};
 pub use overlay::overlay;
 pub use seen::{
-    GoalPaint, GoalPost, GroundPoint, Jersey, LineSegment, PixelBox, PostSide, Seen, SeenRobot, Sight,
+    Detection, GoalPaint, GoalPost, GroundPoint, Jersey, LineSegment, PixelBox, PostSide, Seen, SeenRobot,
 };
 pub use vision::Vision;

@@ -39,7 +39,7 @@ pub fn overlay(image: &Image<'_>, seen: &Seen) -> Vec<u8> {
             GoalPaint::Yellow => YELLOW_POST,
             GoalPaint::Blue => BLUE_POST,
         };
-        canvas.frame(&post.sight.area, colour);
+        canvas.frame(&post.detection.area, colour);
     }
     for robot in &seen.robots {
         let colour = match robot.jersey {
@@ -47,7 +47,7 @@ pub fn overlay(image: &Image<'_>, seen: &Seen) -> Vec<u8> {
             Jersey::Red => LINE_POINT,
             Jersey::Unknown => ROBOT,
         };
-        canvas.frame(&robot.sight.area, colour);
+        canvas.frame(&robot.detection.area, colour);
     }
     if let Some(ball) = &seen.ball {
         canvas.circle(&ball.area, BALL);
@@ -114,7 +114,7 @@ impl Canvas {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Sight;
+    use crate::Detection;
     use nalgebra::Point2;
 
     #[test]
@@ -122,7 +122,7 @@ mod tests {
         let pixels = vec![128; 2 * 64 * 48];
         let image = Image::new(64, 48, &pixels).unwrap();
         let area = PixelBox { left: 20.0, top: 20.0, right: 30.0, bottom: 30.0 };
-        let ball = Some(Sight::new(Point2::new(1.0, 0.0), area));
+        let ball = Some(Detection::new(Point2::new(1.0, 0.0), area));
         let rgb = overlay(&image, &Seen { ball, ..Seen::default() });
         let at = |x: usize, y: usize| &rgb[3 * (y * 64 + x)..3 * (y * 64 + x) + 3];
         assert_eq!((at(30, 25), at(25, 25), at(5, 5)), (&BALL[..], &[128; 3][..], &[128; 3][..]));

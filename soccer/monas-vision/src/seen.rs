@@ -17,7 +17,7 @@ pub struct PixelBox {
 
 /// An object on the ground: where it is in the frame of the camera's ground, and in the image.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sight {
+pub struct Detection {
     /// Distance along the ground to its middle, m.
     pub distance: f64,
     /// Direction, rad, positive to the left.
@@ -26,9 +26,9 @@ pub struct Sight {
     pub area: PixelBox,
 }
 
-impl Sight {
-    pub(crate) fn new(point: Point2<f64>, area: PixelBox) -> Sight {
-        Sight { distance: libm::hypot(point.x, point.y), bearing: libm::atan2(point.y, point.x), area }
+impl Detection {
+    pub(crate) fn new(point: Point2<f64>, area: PixelBox) -> Detection {
+        Detection { distance: libm::hypot(point.x, point.y), bearing: libm::atan2(point.y, point.x), area }
     }
 
     /// Its position on the ground, m.
@@ -64,7 +64,7 @@ pub enum PostSide {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GoalPost {
     /// Its position.
-    pub sight: Sight,
+    pub detection: Detection,
     /// The paint of its goal.
     pub paint: GoalPaint,
     /// Which of the posts it is.
@@ -86,7 +86,7 @@ pub enum Jersey {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SeenRobot {
     /// Its position.
-    pub sight: Sight,
+    pub detection: Detection,
     /// The colour of its jersey.
     pub jersey: Jersey,
 }
@@ -118,7 +118,7 @@ impl LineSegment {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Seen {
     /// The ball.
-    pub ball: Option<Sight>,
+    pub ball: Option<Detection>,
     /// Posts of goals, from left to right.
     pub posts: Vec<GoalPost>,
     /// Other robots, from left to right.

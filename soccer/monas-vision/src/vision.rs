@@ -38,7 +38,7 @@ pub struct Vision {
 }
 
 /// An image that is looked at: what all searches need.
-pub(crate) struct Look<'a> {
+pub(crate) struct ImageContext<'a> {
     pub(crate) image: &'a Image<'a>,
     pub(crate) camera: &'a Camera,
     pub(crate) table: &'a ColourTable,
@@ -100,15 +100,16 @@ impl Vision {
             self.table.update(self.calibration.model());
         }
         self.map.fill(image, &self.table, camera);
-        let look = Look { image, camera, table: &self.table, map: &self.map, objects: &self.objects };
+        let context =
+            ImageContext { image, camera, table: &self.table, map: &self.map, objects: &self.objects };
         let seen = &mut self.seen;
         seen.clear();
-        self.border.scan(&look, seen);
+        self.border.scan(&context, seen);
         if !seen.border.is_empty() {
-            seen.ball = self.ball.search(&look, &self.border);
-            self.posts.scan(&look, &self.border, &mut seen.posts);
-            self.robots.scan(&look, &self.border, seen);
-            self.lines.scan(&look, &self.border, self.robots.cut_bodies(), seen);
+            seen.ball = self.ball.search(&context, &self.border);
+            self.posts.scan(&context, &self.border, &mut seen.posts);
+            self.robots.scan(&context, &self.border, seen);
+            self.lines.scan(&context, &self.border, self.robots.cut_bodies(), seen);
         }
         Ok(seen)
     }

@@ -160,7 +160,7 @@ fn a_robot_that_sees_images_finds_and_moves_the_ball() {
         }
         let plan = MatchSource::load_with(&path, &monas::Registry::linked(), &layers).unwrap();
         // One robot plays; it sees images or nothing, the others nothing.
-        let plan = plan.without_agents(2).embody(move |team, number, mut body| {
+        let plan = plan.without_agents(2).replace_bodies(move |team, number, mut body| {
             if (team, number) == (1, 2) && eyes != Eyes::Blind {
                 if eyes == Eyes::Nao {
                     body = Box::new(SimulatedNao::new(body).unwrap());

@@ -9,7 +9,7 @@ use monas::config::colours;
 use monas_scene::RgbImage;
 use monas_soccer::field_colours::colour_model;
 use monas_vision::{
-    Camera, ColourModel, FieldObjects, GoalPaint, HeadPose, Image, Jersey, PostSide, Seen, Sight, Vision,
+    Camera, ColourModel, Detection, FieldObjects, GoalPaint, HeadPose, Image, Jersey, PostSide, Seen, Vision,
 };
 use serde_json::json;
 
@@ -136,16 +136,16 @@ fn overlay_path(file: &Path, folder: &Path) -> PathBuf {
     folder.join(format!("{name}.seen.png"))
 }
 
-/// A row of the table: what, its kind, and where.
-struct SeenObject<'a> {
+/// A row of the table.
+struct ObjectRow<'a> {
     what: &'static str,
     kind: &'static str,
-    sight: &'a Sight,
+    detection: &'a Detection,
 }
 
-fn objects_of(seen: &Seen) -> Vec<SeenObject<'_>> {
-    let ball = seen.ball.iter().map(|sight| SeenObject { what: "ball", kind: "", sight });
-    let posts = seen.posts.iter().map(|post| SeenObject {
+fn objects_of(seen: &Seen) -> Vec<ObjectRow<'_>> {
+    let ball = seen.ball.iter().map(|detection| ObjectRow { what: "ball", kind: "", detection });
+    let posts = seen.posts.iter().map(|post| ObjectRow {
         what: match post.side {
             PostSide::Left => "left post",
             PostSide::Right => "right post",
@@ -156,16 +156,16 @@ fn objects_of(seen: &Seen) -> Vec<SeenObject<'_>> {
             GoalPaint::Blue => "blue",
             GoalPaint::White => "white",
         },
-        sight: &post.sight,
+        detection: &post.detection,
     });
-    let robots = seen.robots.iter().map(|robot| SeenObject {
+    let robots = seen.robots.iter().map(|robot| ObjectRow {
         what: "robot",
         kind: match robot.jersey {
             Jersey::Blue => "blue",
             Jersey::Red => "red",
             Jersey::Unknown => "",
         },
-        sight: &robot.sight,
+        detection: &robot.detection,
     });
     ball.chain(posts).chain(robots).collect()
 }
@@ -179,10 +179,10 @@ fn report(
 ) -> Result<(), CommandFailure> {
     let objects = objects_of(seen);
     if format == Format::Json {
-        let objects = objects.iter().map(|SeenObject { what, kind, sight }| {
-            let area = &sight.area;
+        let objects = objects.iter().map(|ObjectRow { what, kind, detection }| {
+            let area = &detection.area;
             json!({
-                "what": what, "kind": kind, "distance": sight.distance, "bearing": sight.bearing,
+                "what": what, "kind": kind, "distance": detection.distance, "bearing": detection.bearing,
                 "box": [area.left, area.top, area.right, area.bottom],
             })
         });
@@ -202,13 +202,13 @@ fn report(
     let border = if seen.border.is_empty() { "no field border" } else { "a field border" };
     writeln!(console.out, "{}: {border}, {lines} lines of {points} points", file.display())?;
     if !objects.is_empty() {
-        let rows = objects.iter().map(|SeenObject { what, kind, sight }| {
-            let area = &sight.area;
+        let rows = objects.iter().map(|ObjectRow { what, kind, detection }| {
+            let area = &detection.area;
             [
                 (*what).to_owned(),
                 (*kind).to_owned(),
-                format!("{:.2}", sight.distance),
-                format!("{:.1}", sight.bearing.to_degrees()),
+                format!("{:.2}", detection.distance),
+                format!("{:.1}", detection.bearing.to_degrees()),
                 format!("{:.0},{:.0} {:.0},{:.0}", area.left, area.top, area.right, area.bottom),
             ]
         });

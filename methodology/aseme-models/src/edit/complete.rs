@@ -47,7 +47,7 @@ pub fn completions(source: &str, at: usize, names: ProgramNames<'_>) -> Completi
     let at = floor_boundary(source, at);
     let blanked = text::without_comments(source);
     let is_comment = source[line_start(source, at)..at] != blanked[line_start(source, at)..at];
-    let mut words = Words { names, entries: BTreeSet::new() };
+    let mut words = CompletionCollector { names, entries: BTreeSet::new() };
     if !is_comment {
         match form(source) {
             TextForm::Role => words.role(source, &blanked, at),
@@ -68,7 +68,7 @@ pub fn expression_completions(
 ) -> Completions {
     let at = floor_boundary(expression, at);
     let chart = crate::statechart_of(&Source::new("", source)).0;
-    let mut words = Words { names, entries: BTreeSet::new() };
+    let mut words = CompletionCollector { names, entries: BTreeSet::new() };
     words.expression(&expression[..at], &chart);
     words.at(expression, at)
 }
@@ -81,12 +81,12 @@ fn floor_boundary(text: &str, at: usize) -> usize {
     at
 }
 
-struct Words<'a> {
+struct CompletionCollector<'a> {
     names: ProgramNames<'a>,
     entries: BTreeSet<Completion>,
 }
 
-impl Words<'_> {
+impl CompletionCollector<'_> {
     fn at(self, text: &str, at: usize) -> Completions {
         let start = text[..at].trim_end_matches(text::is_name_character).len();
         Completions { word: Span::new(start, at), entries: self.entries.into_iter().collect() }
@@ -256,14 +256,14 @@ impl Words<'_> {
         if is_within_state_reference(word) {
             return self.states(chart);
         }
-        match zone(word) {
-            Zone::Trigger => {
+        match part_at(word) {
+            ExpressionPart::Trigger => {
                 self.events(chart);
                 self.messages();
                 self.all("word", ["not"]);
             }
-            Zone::Guard => self.condition(word, chart),
-            Zone::Action => {
+            ExpressionPart::Guard => self.condition(word, chart),
+            ExpressionPart::Action => {
                 self.all(
                     "action",
                     ["StartTimeout(", "raise(", "publish.", "process_messages", "publish_all"],
@@ -383,13 +383,13 @@ impl Words<'_> {
 }
 
 /// The part of an expression.
-enum Zone {
+enum ExpressionPart {
     Trigger,
     Guard,
     Action,
 }
 
-fn zone(before: &str) -> Zone {
+fn part_at(before: &str) -> ExpressionPart {
     let (mut depth, mut is_action, mut quotes) = (0_usize, false, text::QuoteScanner::default());
     for letter in before.chars() {
         if quotes.hold(letter) {
@@ -403,9 +403,9 @@ fn zone(before: &str) -> Zone {
         }
     }
     match (depth, is_action) {
-        (0, false) => Zone::Trigger,
-        (0, true) => Zone::Action,
-        _ => Zone::Guard,
+        (0, false) => ExpressionPart::Trigger,
+        (0, true) => ExpressionPart::Action,
+        _ => ExpressionPart::Guard,
     }
 }
 

@@ -134,13 +134,13 @@ impl ChartMerge<'_> {
             }
         }
         self.transitions(&pairs);
-        let borders = Borders::of(self.eac, participant);
-        let place = match borders.need_enclosure(self.iac, place) {
+        let boundary = BoundaryTransitions::of(self.eac, participant);
+        let place = match boundary.need_enclosure(self.iac, place) {
             true => enclose(self.iac, place),
             false => place,
         };
-        self.ways_in(&borders, place);
-        self.ways_out(&borders, place);
+        self.ways_in(&boundary, place);
+        self.ways_out(&boundary, place);
     }
 
     fn mismatch(&mut self, participant: usize, place: usize, wanted: &str, found: &str) {
@@ -156,8 +156,8 @@ impl ChartMerge<'_> {
 
     /// Adds the protocol's rule for engaging in a part to each transition of the role that leads
     /// there.
-    fn ways_in(&mut self, borders: &Borders<'_>, place: usize) {
-        let Some(rule) = borders.rule else { return };
+    fn ways_in(&mut self, boundary: &BoundaryTransitions<'_>, place: usize) {
+        let Some(rule) = boundary.rule else { return };
         let mut is_guarded = false;
         for own in self.iac.transitions.iter_mut().filter(|it| it.target == place && it.source != place) {
             is_guarded = true;
@@ -177,16 +177,16 @@ impl ChartMerge<'_> {
     }
 
     /// The exits of a part lead where the role goes on after it.
-    fn ways_out(&mut self, borders: &Borders<'_>, place: usize) {
+    fn ways_out(&mut self, boundary: &BoundaryTransitions<'_>, place: usize) {
         let leads_out = |it: &IacTransition| it.source == place && it.target != place;
         let Some(target) = self.iac.transitions.iter().find(|it| leads_out(it)).map(|it| it.target) else {
-            if borders.exits.iter().any(|exit| has_content(exit)) {
+            if boundary.exits.iter().any(|exit| has_content(exit)) {
                 self.without_place(place, "outcomes", "nothing leads out of it");
             }
             return;
         };
-        let may_complete = borders.exits.iter().any(|exit| !has_content(exit));
-        for exit in borders.exits.iter().filter(|exit| has_content(exit)) {
+        let may_complete = boundary.exits.iter().any(|exit| !has_content(exit));
+        for exit in boundary.exits.iter().filter(|exit| has_content(exit)) {
             let name = self.iac.usual_name(place, target);
             let is_same = |own: &IacTransition| (&own.te, &own.refinement) == (&exit.te, &exit.refinement);
             if self.iac.transitions.iter().any(|own| leads_out(own) && is_same(own)) {
@@ -233,18 +233,18 @@ impl ChartMerge<'_> {
 }
 
 /// The transitions of a protocol into and out of a part.
-struct Borders<'a> {
+struct BoundaryTransitions<'a> {
     rule: Option<&'a IacTransition>,
     exits: Vec<&'a IacTransition>,
 }
 
-impl<'a> Borders<'a> {
-    fn of(eac: &'a Iac, participant: usize) -> Borders<'a> {
+impl<'a> BoundaryTransitions<'a> {
+    fn of(eac: &'a Iac, participant: usize) -> BoundaryTransitions<'a> {
         let (source, target) =
             (|it: &IacTransition| it.source == participant, |it: &IacTransition| it.target == participant);
         let rule = eac.transitions.iter().find(|it| target(it) && !source(it) && !it.te.is_empty());
         let exits = eac.transitions.iter().filter(|it| source(it) && !target(it)).collect();
-        Borders { rule, exits }
+        BoundaryTransitions { rule, exits }
     }
 
     /// Whether the part has to be enclosed: the role repeats it without anything between, or comes

@@ -1,4 +1,4 @@
-//! M29: guards that judge a moment that is gone.
+//! M29: guards that judge a situation that is gone.
 //!
 //! An activity that waits ends on a message. Its return and the guards that follow it are evaluated
 //! in the same step. A guard that reads another topic, which some activity elsewhere derives from
@@ -24,7 +24,7 @@ use crate::program_symbols::ProgramSymbols;
 
 /// A way in which a node is reached: from the last state that waited.
 #[derive(Clone, Debug)]
-struct Moment<'a> {
+struct NodeArrival<'a> {
     /// The state whose activity ended, the last that waits.
     state: NodeId,
     /// The topics on whose messages it may have ended.
@@ -33,8 +33,8 @@ struct Moment<'a> {
     published: BTreeSet<&'a str>,
 }
 
-/// The moments in which a place is reached, by the state whose activity ended.
-type Moments<'a> = BTreeMap<NodeId, Moment<'a>>;
+/// The ways in which a node is reached, by the state whose activity ended.
+type NodeArrivals<'a> = BTreeMap<NodeId, NodeArrival<'a>>;
 
 /// Guards that are read before what they read is derived.
 pub(crate) fn stale(subject: &CheckedModel, world: &ProgramSymbols) -> Vec<Diagnostic> {
@@ -50,7 +50,7 @@ pub(crate) fn stale(subject: &CheckedModel, world: &ProgramSymbols) -> Vec<Diagn
         })
         .collect();
     let activities = chart.activities().map(|entry| (entry.node, entry.name.to_owned())).collect();
-    let moments = MomentSearch { subject, world, activities }.run();
+    let arrivals = ArrivalSearch { subject, world, activities }.run();
     let mut found = Vec::new();
     for (&id, read) in &reads {
         let source = subject.chart.transition(id).source;
@@ -60,17 +60,17 @@ pub(crate) fn stale(subject: &CheckedModel, world: &ProgramSymbols) -> Vec<Diagn
             // Nothing is decided.
             continue;
         }
-        for (moment, path) in
-            moments[source.0 as usize].values().flat_map(|it| read.iter().map(move |path| (it, *path)))
+        for (arrival, path) in
+            arrivals[source.0 as usize].values().flat_map(|it| read.iter().map(move |path| (it, *path)))
         {
-            if moment.published.contains(path) || moment.ended_on.contains(path) {
+            if arrival.published.contains(path) || arrival.ended_on.contains(path) {
                 continue;
             }
             let origin = origins(world, path);
-            let Some(cause) = moment.ended_on.iter().find(|topic| origin.contains(topic.as_str())) else {
+            let Some(cause) = arrival.ended_on.iter().find(|topic| origin.contains(topic.as_str())) else {
                 continue;
             };
-            found.push(report(subject, world, id, moment.state, path, cause));
+            found.push(report(subject, world, id, arrival.state, path, cause));
         }
     }
     found.sort_by(|a, b| (a.span, &a.message).cmp(&(b.span, &b.message)));
@@ -121,51 +121,51 @@ fn origins<'a>(world: &'a ProgramSymbols, path: &'a str) -> BTreeSet<&'a str> {
     origins
 }
 
-/// Adds a moment to those of a place; returns what is known now, if that is new.
-fn joined<'m, 'a>(known: &'m mut Moments<'a>, moment: Moment<'a>) -> Option<&'m Moment<'a>> {
-    match known.entry(moment.state) {
-        Entry::Vacant(new) => Some(new.insert(moment)),
+/// Adds an arrival to those of a node; returns what is known now, if that is new.
+fn joined<'m, 'a>(known: &'m mut NodeArrivals<'a>, arrival: NodeArrival<'a>) -> Option<&'m NodeArrival<'a>> {
+    match known.entry(arrival.state) {
+        Entry::Vacant(new) => Some(new.insert(arrival)),
         Entry::Occupied(known) => {
             let known = known.into_mut();
             let before = known.published.len();
-            known.published.retain(|topic| moment.published.contains(topic));
+            known.published.retain(|topic| arrival.published.contains(topic));
             (known.published.len() < before).then_some(known)
         }
     }
 }
 
 /// Follows the completions of states.
-struct MomentSearch<'a> {
+struct ArrivalSearch<'a> {
     subject: &'a CheckedModel,
     world: &'a ProgramSymbols,
     activities: BTreeMap<NodeId, String>,
 }
 
-impl<'a> MomentSearch<'a> {
-    /// The moments in which each node completes, or is passed through.
-    fn run(&self) -> Vec<Moments<'a>> {
-        let mut moments = vec![Moments::new(); self.subject.chart.nodes().len()];
+impl<'a> ArrivalSearch<'a> {
+    /// The arrivals with which each node completes, or is passed through.
+    fn run(&self) -> Vec<NodeArrivals<'a>> {
+        let mut arrivals = vec![NodeArrivals::new(); self.subject.chart.nodes().len()];
         let basic = self.subject.chart.nodes().filter(|(_, node)| node.kind == NodeKind::Basic);
-        let mut open: Vec<(NodeId, Option<Moment<'a>>)> = basic.map(|(id, _)| (id, None)).collect();
+        let mut open: Vec<(NodeId, Option<NodeArrival<'a>>)> = basic.map(|(id, _)| (id, None)).collect();
         while let Some((node, before)) = open.pop() {
-            let Some(moment) = self.after(node, before) else { continue };
-            if let Some(changed) = joined(&mut moments[node.0 as usize], moment) {
+            let Some(arrival) = self.after(node, before) else { continue };
+            if let Some(changed) = joined(&mut arrivals[node.0 as usize], arrival) {
                 open.extend(self.next(node).into_iter().map(|next| (next, Some(changed.clone()))));
             }
         }
-        moments
+        arrivals
     }
 
-    /// The moment after a node that is reached in a moment; none before the first state that waits.
-    fn after(&self, node: NodeId, before: Option<Moment<'a>>) -> Option<Moment<'a>> {
+    /// The arrival after a node reached by another arrival; none before the first state that waits.
+    fn after(&self, node: NodeId, before: Option<NodeArrival<'a>>) -> Option<NodeArrival<'a>> {
         let Some(activity) = self.activities.get(&node) else { return before };
         let topics = self.world.activities.get(activity).and_then(Option::as_ref);
         let published = topics.into_iter().flatten().map(String::as_str);
         match self.world.ended_by.get(activity).filter(|topics| !topics.is_empty()) {
-            Some(ended_on) => Some(Moment { state: node, ended_on, published: published.collect() }),
-            None => before.map(|mut moment| {
-                moment.published.extend(published);
-                moment
+            Some(ended_on) => Some(NodeArrival { state: node, ended_on, published: published.collect() }),
+            None => before.map(|mut arrival| {
+                arrival.published.extend(published);
+                arrival
             }),
         }
     }

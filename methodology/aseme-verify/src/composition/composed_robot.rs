@@ -93,11 +93,11 @@ impl ComposedRobot {
         name: &str,
         source: &Arc<Source>,
         (subject, abstraction): (CheckedModel, Abstraction),
-        neighbourhood: Neighbourhood<'_>,
+        deployment: RobotDeployment<'_>,
         world: Option<&ProgramSymbols>,
     ) -> ComposedRobot {
-        let host = neighbourhood.host.to_owned();
-        let filter = MessageFilter::new(neighbourhood, &subject.chart, world);
+        let host = deployment.host.to_owned();
+        let filter = MessageFilter::new(deployment, &subject.chart, world);
         let received = received_messages(&subject.chart, &filter);
         let waits = waits(&subject, &received, &filter);
         let sent = messages_to_send(&subject.chart, world);
@@ -284,7 +284,7 @@ fn literal(value: &Expression, constants: &[Constant]) -> Option<String> {
 }
 
 /// The hosts of the robots, and the messages of other agents on the robot's own host.
-pub(crate) struct Neighbourhood<'a> {
+pub(crate) struct RobotDeployment<'a> {
     pub(crate) host: &'a str,
     /// The hosts of all robots.
     pub(crate) hosts: &'a [&'a str],
@@ -294,7 +294,7 @@ pub(crate) struct Neighbourhood<'a> {
 
 /// The messages that concern a chart: those of robots, itself among them.
 struct MessageFilter<'a> {
-    neighbourhood: Neighbourhood<'a>,
+    deployment: RobotDeployment<'a>,
     /// The messages that its actions send.
     sent: Vec<MessageName>,
     world: Option<&'a ProgramSymbols>,
@@ -302,20 +302,20 @@ struct MessageFilter<'a> {
 
 impl<'a> MessageFilter<'a> {
     fn new(
-        neighbourhood: Neighbourhood<'a>,
+        deployment: RobotDeployment<'a>,
         chart: &Statechart,
         world: Option<&'a ProgramSymbols>,
     ) -> MessageFilter<'a> {
         let sent = actions(chart)
             .filter_map(|(_, action)| message_names::message_written(action, world).map(|(word, _)| word));
-        MessageFilter { neighbourhood, sent: sent.collect(), world }
+        MessageFilter { deployment, sent: sent.collect(), world }
     }
 
     /// The message that a condition reads: of a named host, or without a name of another agent on
     /// the own one. Its own are what has been read before, whatever it is.
     fn read(&self, path: &yase::expression::Path) -> Option<MessageReference> {
-        let of_host = message_reference(path, self.neighbourhood.hosts.iter().copied(), self.world);
-        of_host.or_else(|| self.without_host(path, &self.neighbourhood.beside))
+        let of_host = message_reference(path, self.deployment.hosts.iter().copied(), self.world);
+        of_host.or_else(|| self.without_host(path, &self.deployment.beside))
     }
 
     /// The message that a trigger waits for. A message that the chart sends to itself may lack the
@@ -325,7 +325,7 @@ impl<'a> MessageFilter<'a> {
     }
 
     fn without_host(&self, path: &yase::expression::Path, sent: &[MessageName]) -> Option<MessageReference> {
-        let called = message_names::own(path, self.neighbourhood.host, self.world)?;
+        let called = message_names::own(path, self.deployment.host, self.world)?;
         sent.iter().any(|message| message.means(&called.word)).then_some(called)
     }
 }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use monas_core::activity::Topics;
-use monas_robot::{BodyLimit, Capability, Surroundings};
+use monas_robot::{BodyEnvironment, BodyLimit, Capability};
 use yase::{Diagnostic, Severity, Statechart};
 
 use super::super::element::Element;
@@ -12,7 +12,7 @@ use super::AgentReader;
 impl AgentReader<'_> {
     /// Reports what the body cannot do, effect by effect, with the activities of each agent that
     /// rely on it. Capabilities that no activity uses are not mentioned.
-    pub(super) fn limits(&mut self, elements: &[Element], surroundings: Surroundings) {
+    pub(super) fn limits(&mut self, elements: &[Element], surroundings: BodyEnvironment) {
         let Some((element, body)) = body_element(elements).zip(self.setup.body.as_ref()) else { return };
         let limits = body.limits(surroundings);
         if limits.is_empty() {

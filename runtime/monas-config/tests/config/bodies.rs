@@ -5,7 +5,7 @@ use std::path::Path;
 use monas_config::read;
 use monas_core::registry::Registry;
 use monas_robot::{
-    BodyFault, BodyKind, BodyOption, BodySettings, Error, ErrorKind, OptionKind, Surroundings, body_kind,
+    BodyEnvironment, BodyFault, BodyKind, BodyOption, BodySettings, Error, ErrorKind, OptionKind, body_kind,
 };
 use yase::Source;
 
@@ -30,10 +30,10 @@ body_kind!(BodyKind {
 });
 
 /// A paper shade is too near to more than three bulbs, and a lamp of its own is in a room.
-fn faults(settings: &BodySettings, surroundings: Surroundings) -> Vec<BodyFault> {
+fn faults(settings: &BodySettings, surroundings: BodyEnvironment) -> Vec<BodyFault> {
     let option = |name: &str| settings.options.get(name).map(String::as_str);
     let burns = option("shade") == Some("paper") && option("bulbs") > Some("3");
-    let is_lost = surroundings == Surroundings::Own && option("room").is_none();
+    let is_lost = surroundings == BodyEnvironment::Own && option("room").is_none();
     [burns.then(|| BodyFault::new("bulbs", "paper burns")), is_lost.then(|| BodyFault::new("room", "where?"))]
         .into_iter()
         .flatten()

@@ -12,7 +12,7 @@ use monas_soccer::{GameState, HeadMode, MotionRequest, MotionState};
 use narukom::{Hub, Retention, Timestamp, Topic};
 
 use super::*;
-use crate::decision_cases::{Case, Look, Requests, game, goalie_cases};
+use crate::decision_cases::{Case, GazeTarget, Requests, game, goalie_cases};
 use crate::decision_tests::{DecisionFixture, decision_tests, find};
 
 /// A behaviour, its blackboard, and one for all other agents of its robot.
@@ -47,8 +47,8 @@ impl<A: Activity> Fixture<A> {
         let after = self.newest();
         let head = self.others.read(topics::HEAD).filter(|_| after.0 != before.0);
         let look = head.map(|head| match head.mode() {
-            HeadMode::Look => Look::At(Gaze { yaw: head.yaw, pitch: head.pitch }),
-            HeadMode::Scan | HeadMode::Ahead => Look::Scan,
+            HeadMode::Look => GazeTarget::At(Gaze { yaw: head.yaw, pitch: head.pitch }),
+            HeadMode::Scan | HeadMode::Ahead => GazeTarget::Scan,
         });
         let request = self.others.read(topics::MOTION).filter(|_| after.1 != before.1);
         let motion = request.map(MotionRequest::desired);
@@ -116,9 +116,9 @@ fn play<A: Activity + Default>() {
         assert_eq!(fixture.decide(&search), (None, None), "it waits for play");
     }
     fixture.publish(topics::GAME_STATE, game());
-    assert_eq!(fixture.decide(&search).0, Some(Look::Scan));
+    assert_eq!(fixture.decide(&search).0, Some(GazeTarget::Scan));
     assert_eq!(fixture.run(), (None, None), "a message is used once");
-    assert_eq!(fixture.decide(&search).0, Some(Look::Scan));
+    assert_eq!(fixture.decide(&search).0, Some(GazeTarget::Scan));
 }
 
 #[test]

@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use monas_robot::{GamePhase, Posture};
 
 use super::*;
-use crate::decision_cases::{Case, Look, Requests, game};
+use crate::decision_cases::{Case, GazeTarget, Requests, game};
 use crate::decision_tests::{DecisionFixture, decision_tests};
 
 const TICK: Duration = Duration::from_millis(20);
@@ -81,8 +81,8 @@ impl<B: Behaviour + Default> DecisionFixture for Fixture<B> {
         self.robot.behaviour.decide(memory);
         let look = match memory.gaze {
             GazeRequest::Ahead => None,
-            GazeRequest::Scan => Some(Look::Scan),
-            GazeRequest::At(gaze) => Some(Look::At(gaze)),
+            GazeRequest::Scan => Some(GazeTarget::Scan),
+            GazeRequest::At(gaze) => Some(GazeTarget::At(gaze)),
         };
         (look, (memory.requested_at == memory.now).then_some(memory.motion))
     }

@@ -2,11 +2,11 @@
 
 use nalgebra::Point2;
 
-use super::Look;
+use super::ImageContext;
 use super::border::BorderScan;
 use crate::colour::ColourClass;
 use crate::objects::BallPattern;
-use crate::seen::{PixelBox, Sight};
+use crate::seen::{Detection, PixelBox};
 
 /// The most candidates that are checked.
 const MOST: usize = 12;
@@ -39,29 +39,30 @@ struct Circle {
 }
 
 impl BallSearch {
-    pub(crate) fn search(&mut self, look: &Look<'_>, border: &BorderScan) -> Option<Sight> {
-        self.collect(look, border);
+    pub(crate) fn search(&mut self, context: &ImageContext<'_>, border: &BorderScan) -> Option<Detection> {
+        self.collect(context, border);
         let mut best: Option<(f64, Circle)> = None;
         for index in 0..self.candidates.len() {
-            if let Some((quality, circle)) = self.check(look, self.candidates[index])
+            if let Some((quality, circle)) = self.check(context, self.candidates[index])
                 && best.is_none_or(|(least, _)| quality > least)
             {
                 best = Some((quality, circle));
             }
         }
         let (_, circle) = best?;
-        let position = look.camera.point_at_height(circle.x, circle.y, look.objects.ball_radius)?;
-        Some(Sight::new(position, circle.area()))
+        let position = context.camera.point_at_height(circle.x, circle.y, context.objects.ball_radius)?;
+        Some(Detection::new(position, circle.area()))
     }
 
     /// Collects the best places, where a square of the size of the ball differs from the carpet
     /// around it.
-    fn collect(&mut self, look: &Look<'_>, border: &BorderScan) {
+    fn collect(&mut self, context: &ImageContext<'_>, border: &BorderScan) {
         self.candidates.clear();
-        let (map, step) = (look.map, look.map.step as f64);
+        let (map, step) = (context.map, context.map.step as f64);
         let radius_at = |x: f32, y: f32| {
-            let scale = look.camera.scale(f64::from(x) * step, f64::from(y) * step, look.objects.ball_radius);
-            (scale * look.objects.ball_radius / step) as f32
+            let scale =
+                context.camera.scale(f64::from(x) * step, f64::from(y) * step, context.objects.ball_radius);
+            (scale * context.objects.ball_radius / step) as f32
         };
         let mut y = 0.0f32;
         while y < map.rows as f32 {
@@ -72,7 +73,7 @@ impl BallSearch {
             while x < map.columns as f32 {
                 let radius = radius_at(x, y);
                 if radius >= 1.2 && y + 1.2 * radius > border.row(x as usize) {
-                    self.consider(look, x, y, radius);
+                    self.consider(context, x, y, radius);
                 }
                 x += pace;
             }
@@ -80,14 +81,14 @@ impl BallSearch {
         }
     }
 
-    fn consider(&mut self, look: &Look<'_>, x: f32, y: f32, radius: f32) {
-        let map = look.map;
+    fn consider(&mut self, context: &ImageContext<'_>, x: f32, y: f32, radius: f32) {
+        let map = context.map;
         let inner = 0.7 * radius;
         let inside = map.shares(x - inner, y - inner, x + inner, y + inner);
         if inside.cells == 0.0 {
             return;
         }
-        let likeness = match look.objects.ball {
+        let likeness = match context.objects.ball {
             BallPattern::Orange if inside.orange >= 0.45 => inside.orange,
             BallPattern::BlackAndWhite if inside.green <= 0.25 && inside.white >= 0.12 => {
                 1.0 - inside.green + 2.0 * inside.dark.min(0.25)
@@ -136,12 +137,12 @@ impl BallSearch {
 
     /// Fits a circle to the edge of a candidate and checks its size, its roundness and what it
     /// encloses. Returns a quality.
-    fn check(&mut self, look: &Look<'_>, candidate: BallCandidate) -> Option<(f64, Circle)> {
+    fn check(&mut self, context: &ImageContext<'_>, candidate: BallCandidate) -> Option<(f64, Circle)> {
         /// Least radius at which the patches of a ball are visible, pixels.
         const PATCHES: f64 = 4.5;
-        let step = look.map.step as f64;
+        let step = context.map.step as f64;
         let radius = f64::from(candidate.radius) * step;
-        if look.objects.ball == BallPattern::BlackAndWhite && radius < PATCHES {
+        if context.objects.ball == BallPattern::BlackAndWhite && radius < PATCHES {
             return None;
         }
         let mut circle = Circle {
@@ -150,10 +151,10 @@ impl BallSearch {
             radius,
         };
         for _ in 0..3 {
-            self.find_edges(look, &circle);
-            circle = self.fit(look, circle)?;
+            self.find_edges(context, &circle);
+            circle = self.fit(context, circle)?;
         }
-        let expected = look.expected_radius(circle.x, circle.y);
+        let expected = context.expected_radius(circle.x, circle.y);
         let ratio = circle.radius / expected.max(0.1);
         // An edge is found to a pixel, which matters for a small ball.
         let slack = 1.0 / expected.max(1.0);
@@ -161,33 +162,34 @@ impl BallSearch {
             return None;
         }
         // Most of it is in the image and the patches are visible, or they do not count.
-        let shows_patches = circle.radius >= PATCHES && look.rays_within(&circle) >= 0.7 * RAYS as f64;
-        if look.objects.ball == BallPattern::BlackAndWhite && !shows_patches {
+        let shows_patches = circle.radius >= PATCHES && context.rays_within(&circle) >= 0.7 * RAYS as f64;
+        if context.objects.ball == BallPattern::BlackAndWhite && !shows_patches {
             return None;
         }
-        self.find_edges(look, &circle);
+        self.find_edges(context, &circle);
         let tolerance = 0.16 * circle.radius + 0.9;
         let is_on = |&(x, y): &(f64, f64)| {
             (libm::hypot(x - circle.x, y - circle.y) - circle.radius).abs() < tolerance
         };
-        let round = self.edges.iter().filter(|edge| is_on(edge)).count() as f64 / look.rays_within(&circle);
+        let round =
+            self.edges.iter().filter(|edge| is_on(edge)).count() as f64 / context.rays_within(&circle);
         if round < 0.62 {
             return None;
         }
-        let content = look.content(&circle)?;
+        let content = context.content(&circle)?;
         Some((round + content - 0.3 * (ratio - 1.0).abs(), circle))
     }
 
     /// The points at which rays from the centre leave the ball for the carpet.
-    fn find_edges(&mut self, look: &Look<'_>, circle: &Circle) {
+    fn find_edges(&mut self, context: &ImageContext<'_>, circle: &Circle) {
         self.edges.clear();
         let pace = (circle.radius / 16.0).max(0.5);
         for ray in 0..RAYS {
             let (sin, cos) = direction(ray);
             let (mut at, mut outside_from, mut outside) = (0.3 * circle.radius, 0.0, 0);
             while at < 1.7 * circle.radius + 2.0 {
-                let Some(class) = look.class_at(circle.x + at * cos, circle.y + at * sin) else { break };
-                let is_ball = match look.objects.ball {
+                let Some(class) = context.class_at(circle.x + at * cos, circle.y + at * sin) else { break };
+                let is_ball = match context.objects.ball {
                     BallPattern::Orange => is_orange(class),
                     BallPattern::BlackAndWhite => class != ColourClass::Green,
                 };
@@ -211,7 +213,7 @@ impl BallSearch {
 
     /// The circle through the edge points, by the method of Kåsa (1976): least squares of a linear
     /// equation; then again without the points far from it.
-    fn fit(&mut self, look: &Look<'_>, start: Circle) -> Option<Circle> {
+    fn fit(&mut self, context: &ImageContext<'_>, start: Circle) -> Option<Circle> {
         let mut circle = start;
         for round in 0..2 {
             if round == 1 {
@@ -223,7 +225,7 @@ impl BallSearch {
                 return None;
             }
             circle = fitted(&self.edges)?;
-            let expected = look.expected_radius(circle.x, circle.y);
+            let expected = context.expected_radius(circle.x, circle.y);
             let moved = libm::hypot(circle.x - start.x, circle.y - start.y);
             if moved > 1.5 * start.radius + 2.0 || circle.radius > 2.0 * expected + 2.0 {
                 return None;
@@ -269,7 +271,7 @@ fn fitted(points: &[(f64, f64)]) -> Option<Circle> {
     Some(Circle { x: mean.x + x, y: mean.y + y, radius })
 }
 
-impl Look<'_> {
+impl ImageContext<'_> {
     /// The radius of a ball at a pixel, pixels.
     fn expected_radius(&self, x: f64, y: f64) -> f64 {
         self.camera.scale(x, y, self.objects.ball_radius) * self.objects.ball_radius

@@ -1,6 +1,6 @@
 //! The border of the field: where the carpet begins in each column.
 
-use super::Look;
+use super::ImageContext;
 use crate::Seen;
 use crate::colour::ColourClass;
 use crate::seen::GroundPoint;
@@ -29,11 +29,12 @@ impl BorderScan {
         self.rows.get(column).copied().unwrap_or(f32::MAX)
     }
 
-    pub(crate) fn scan(&mut self, look: &Look<'_>, seen: &mut Seen) {
-        let map = look.map;
+    pub(crate) fn scan(&mut self, context: &ImageContext<'_>, seen: &mut Seen) {
+        let map = context.map;
         self.raw.clear();
-        self.raw
-            .extend((SPACING / 2..map.columns).step_by(SPACING).map(|column| first_of_field(look, column)));
+        self.raw.extend(
+            (SPACING / 2..map.columns).step_by(SPACING).map(|column| first_of_field(context, column)),
+        );
         self.build_hull();
         self.rows.clear();
         if self.hull.len() < 2 {
@@ -55,22 +56,22 @@ impl BorderScan {
         seen.border
             .extend(self.hull.iter().map(|&(x, y)| [(f64::from(x) + 0.5) * step, f64::from(y) * step]));
         let columns = self.raw.iter().enumerate();
-        seen.border_points.extend(columns.filter_map(|(index, row)| self.point(look, index, (*row)?)));
+        seen.border_points.extend(columns.filter_map(|(index, row)| self.point(context, index, (*row)?)));
     }
 
     /// The point of the border in a scanned column, where carpet begins at a row; none if it leaves
     /// the image there, or something hides its end.
-    fn point(&self, look: &Look<'_>, index: usize, row: usize) -> Option<GroundPoint> {
+    fn point(&self, context: &ImageContext<'_>, index: usize, row: usize) -> Option<GroundPoint> {
         /// Cells between the end of the carpet and the hull.
         const TOLERANCE: f32 = 1.5;
-        let step = look.map.step as f64;
+        let step = context.map.step as f64;
         let column = index * SPACING + SPACING / 2;
         if row < 2 || (row as f32 - self.row(column)).abs() > TOLERANCE {
             return None;
         }
         // Of each cell one row of pixels is classified: its first.
         let pixel = [(column as f64 + 0.5) * step, (row as f64 - 0.5) * step + 0.5];
-        let position = look.camera.point_at_height(pixel[0], pixel[1], 0.0)?;
+        let position = context.camera.point_at_height(pixel[0], pixel[1], 0.0)?;
         Some(GroundPoint { pixel, position })
     }
 
@@ -99,10 +100,10 @@ impl BorderScan {
 }
 
 /// The row for which carpet below less all else below is most.
-fn first_of_field(look: &Look<'_>, column: usize) -> Option<usize> {
+fn first_of_field(context: &ImageContext<'_>, column: usize) -> Option<usize> {
     /// Least surplus of carpet, cells.
     const LEAST: i32 = 5;
-    let map = look.map;
+    let map = context.map;
     let (mut score, mut best, mut row_of_best) = (0, LEAST, None);
     for row in (map.horizon(column)..map.rows).rev() {
         score += if map.at(column, row) == ColourClass::Green { 1 } else { -1 };

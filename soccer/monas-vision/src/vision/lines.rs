@@ -1,10 +1,10 @@
 //! Field lines: bright bars between carpet, as wide as a line, and straight parts of them.
 
-use super::Look;
+use super::ImageContext;
 use super::border::BorderScan;
 use crate::Seen;
 use crate::colour::ColourClass;
-use crate::seen::{GroundPoint, LineSegment, PixelBox, Sight};
+use crate::seen::{Detection, GroundPoint, LineSegment, PixelBox};
 
 /// Pixels between scanned columns and between scanned rows, in an image of 640 columns.
 const COLUMN_SPACING: usize = 6;
@@ -49,8 +49,14 @@ enum ScanAxis {
 impl LineScan {
     /// Finds line points and straight parts, none of them on what was seen or on a body that the
     /// lower edge of the image cuts.
-    pub(crate) fn scan(&mut self, look: &Look<'_>, border: &BorderScan, cut: &[PixelBox], seen: &mut Seen) {
-        let (width, height) = (look.image.width(), look.image.height());
+    pub(crate) fn scan(
+        &mut self,
+        context: &ImageContext<'_>,
+        border: &BorderScan,
+        cut: &[PixelBox],
+        seen: &mut Seen,
+    ) {
+        let (width, height) = (context.image.width(), context.image.height());
         let part = |spacing: usize| (spacing * width / 640).max(2);
         for (axis, spacing, count) in
             [(ScanAxis::Column, part(COLUMN_SPACING), width), (ScanAxis::Row, part(ROW_SPACING), height)]
@@ -59,7 +65,7 @@ impl LineScan {
             self.linked.clear();
             for (scan, at) in (spacing / 2..count).step_by(spacing).enumerate() {
                 let first = seen.line_points.len();
-                self.scan_one(look, border, cut, axis, at, seen);
+                self.scan_one(context, border, cut, axis, at, seen);
                 for index in first..seen.line_points.len() {
                     self.link(seen.line_points[index], axis, scan, spacing);
                 }
@@ -74,17 +80,17 @@ impl LineScan {
     /// Finds the line points of a column or row of pixels.
     fn scan_one(
         &mut self,
-        look: &Look<'_>,
+        context: &ImageContext<'_>,
         border: &BorderScan,
         cut: &[PixelBox],
         axis: ScanAxis,
         at: usize,
         seen: &mut Seen,
     ) {
-        let step = look.map.step;
+        let step = context.map.step;
         let (start, end) = match axis {
-            ScanAxis::Column => ((border.row(at / step) * step as f32) as usize + 2, look.image.height()),
-            ScanAxis::Row => (0, look.image.width()),
+            ScanAxis::Column => ((border.row(at / step) * step as f32) as usize + 2, context.image.height()),
+            ScanAxis::Row => (0, context.image.width()),
         };
         if start + 8 >= end {
             return;
@@ -93,8 +99,8 @@ impl LineScan {
             ScanAxis::Column => (at, along),
             ScanAxis::Row => (along, at),
         };
-        self.read_profile(look, axis, at, start, end);
-        let model = look.table.model();
+        self.read_profile(context, axis, at, start, end);
+        let model = context.table.model();
         // A far line is blurred: a part of the step from carpet to white is enough, if it is not
         // noise, of which the smoothed difference has about half the deviation.
         let least = (0.15 * (model.white_luma - model.green_luma)).max(2.3 * model.deviation).max(6.0) as i32;
@@ -118,8 +124,8 @@ impl LineScan {
                     steepest = gradient(fall);
                 }
                 let (begin, finish) = ((start + begin) as f64, (start + fall) as f64);
-                if let Some(point) = line_point(look, axis, pixel, begin, finish, (start, end))
-                    && is_on_field(look, border, &point)
+                if let Some(point) = line_point(context, axis, pixel, begin, finish, (start, end))
+                    && is_on_field(context, border, &point)
                     && !is_on_object(seen, cut, &point)
                     && seen.line_points.len() < MOST_POINTS
                 {
@@ -132,12 +138,19 @@ impl LineScan {
     }
 
     /// Reads the luma of two neighbouring columns or rows, smoothed with the weights 1, 2, 1.
-    fn read_profile(&mut self, look: &Look<'_>, axis: ScanAxis, at: usize, start: usize, end: usize) {
+    fn read_profile(
+        &mut self,
+        context: &ImageContext<'_>,
+        axis: ScanAxis,
+        at: usize,
+        start: usize,
+        end: usize,
+    ) {
         self.profile.clear();
         let mean = |along: usize| {
             let (one, other) = match axis {
-                ScanAxis::Column => (look.image.luma(at, along), look.image.luma(at + 1, along)),
-                ScanAxis::Row => (look.image.luma(along, at), look.image.luma(along, at + 1)),
+                ScanAxis::Column => (context.image.luma(at, along), context.image.luma(at + 1, along)),
+                ScanAxis::Row => (context.image.luma(along, at), context.image.luma(along, at + 1)),
             };
             u16::from(one) + u16::from(other)
         };
@@ -228,7 +241,7 @@ fn distance_from(a: [f64; 2], b: [f64; 2], point: [f64; 2]) -> f64 {
 
 /// The point in the middle of a bright bar, if it is as wide as a line and between carpet.
 fn line_point(
-    look: &Look<'_>,
+    context: &ImageContext<'_>,
     axis: ScanAxis,
     pixel: impl Fn(usize) -> (usize, usize),
     begin: f64,
@@ -241,29 +254,29 @@ fn line_point(
         ScanAxis::Row => [along + 0.5, pixel(0).1 as f64 + 0.5],
     };
     let centre = pixel_of(middle);
-    let position = look.camera.point_at_height(centre[0], centre[1], 0.0)?;
+    let position = context.camera.point_at_height(centre[0], centre[1], 0.0)?;
     let ends = [begin, finish].map(|along| {
         let [x, y] = pixel_of(along);
-        look.camera.point_at_height(x, y, 0.0)
+        context.camera.point_at_height(x, y, 0.0)
     });
     // On the ground, as a scan crosses it: a line is met at an angle. Blur adds two pixels.
     let width = (ends[1]? - ends[0]?).norm();
     let per_pixel = width / (finish - begin).max(1.0);
-    let line = look.objects.line_width;
+    let line = context.objects.line_width;
     if width > 3.0 * line + 2.0 * per_pixel || width < 0.25 * line - per_pixel {
         return None;
     }
     let is_carpet = |along: f64| {
         let inside = along >= start as f64 && along < end as f64;
         let (x, y) = pixel(along.max(0.0) as usize);
-        inside && look.table.class(look.image.yuv(x, y)) == ColourClass::Green
+        inside && context.table.class(context.image.yuv(x, y)) == ColourClass::Green
     };
     let reach = 2.0 + 0.25 * (finish - begin);
     let carpet_before = is_carpet(begin - reach) || is_carpet(begin - reach - 2.0);
     let carpet_after = is_carpet(finish + reach) || is_carpet(finish + reach + 2.0);
     // Bright pixels are white, unless the line is too thin to show its colour.
     let (x, y) = pixel(middle as usize);
-    let class = look.table.class(look.image.yuv(x, y));
+    let class = context.table.class(context.image.yuv(x, y));
     let is_pale = class == ColourClass::White || (finish - begin < 5.0 && is_colourless(class));
     (carpet_before && carpet_after && is_pale).then_some(GroundPoint { pixel: centre, position })
 }
@@ -272,8 +285,8 @@ fn is_colourless(class: ColourClass) -> bool {
     matches!(class, ColourClass::White | ColourClass::Other | ColourClass::Green)
 }
 
-fn is_on_field(look: &Look<'_>, border: &BorderScan, point: &GroundPoint) -> bool {
-    let step = look.map.step as f64;
+fn is_on_field(context: &ImageContext<'_>, border: &BorderScan, point: &GroundPoint) -> bool {
+    let step = context.map.step as f64;
     point.pixel[1] / step > f64::from(border.row((point.pixel[0] / step) as usize)) + 0.5
 }
 
@@ -285,10 +298,10 @@ fn is_on_object(seen: &Seen, bodies: &[PixelBox], point: &GroundPoint) -> bool {
             && (area.top - margin..area.bottom + margin).contains(&y)
     };
     let within = |area: &PixelBox| holds(area, 0.1 * (area.right - area.left) + 2.0);
-    let of = |sight: &Sight| within(&sight.area);
+    let of = |detection: &Detection| within(&detection.area);
     seen.ball.as_ref().is_some_and(of)
-        || seen.posts.iter().any(|post| of(&post.sight))
-        || seen.robots.iter().any(|robot| of(&robot.sight))
+        || seen.posts.iter().any(|post| of(&post.detection))
+        || seen.robots.iter().any(|robot| of(&robot.detection))
         || bodies.iter().any(within)
 }
 

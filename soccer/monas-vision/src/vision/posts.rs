@@ -1,9 +1,9 @@
 //! Goal posts: vertical bars across the horizon with a foot on the field.
 
-use super::Look;
+use super::ImageContext;
 use super::border::BorderScan;
 use crate::colour::ColourClass;
-use crate::seen::{GoalPaint, GoalPost, PixelBox, PostSide, Sight};
+use crate::seen::{Detection, GoalPaint, GoalPost, PixelBox, PostSide};
 
 /// The number of rows that are scanned for posts.
 const ROWS: usize = 5;
@@ -25,21 +25,26 @@ pub(crate) struct PostScan {
 }
 
 impl PostScan {
-    pub(crate) fn scan(&mut self, look: &Look<'_>, border: &BorderScan, posts: &mut Vec<GoalPost>) {
-        let paints: &[(GoalPaint, ColourClass)] = match look.objects.has_coloured_goals {
+    pub(crate) fn scan(
+        &mut self,
+        context: &ImageContext<'_>,
+        border: &BorderScan,
+        posts: &mut Vec<GoalPost>,
+    ) {
+        let paints: &[(GoalPaint, ColourClass)] = match context.objects.has_coloured_goals {
             true => &[(GoalPaint::Yellow, ColourClass::Yellow), (GoalPaint::Blue, ColourClass::Blue)],
             false => &[(GoalPaint::White, ColourClass::White)],
         };
         for &(paint, class) in paints {
             let first = posts.len();
-            self.mark(look, border, class);
+            self.mark(context, border, class);
             let mut column = 0;
             while column < self.columns.len() {
                 let end = self.end_of_run(column);
                 if end > column
-                    && let Some(sight) = post(look, border, paint, class, column, end)
+                    && let Some(detection) = post(context, border, paint, class, column, end)
                 {
-                    posts.push(GoalPost { sight, paint, side: PostSide::Unknown });
+                    posts.push(GoalPost { detection, paint, side: PostSide::Unknown });
                 }
                 column = end.max(column + 1);
             }
@@ -47,14 +52,14 @@ impl PostScan {
                 (left.side, right.side) = (PostSide::Left, PostSide::Right);
             }
         }
-        posts.sort_unstable_by(|a, b| a.sight.area.left.total_cmp(&b.sight.area.left));
+        posts.sort_unstable_by(|a, b| a.detection.area.left.total_cmp(&b.detection.area.left));
     }
 
-    fn mark(&mut self, look: &Look<'_>, border: &BorderScan, class: ColourClass) {
+    fn mark(&mut self, context: &ImageContext<'_>, border: &BorderScan, class: ColourClass) {
         self.columns.clear();
-        self.columns.extend((0..look.map.columns).map(|column| {
+        self.columns.extend((0..context.map.columns).map(|column| {
             let found =
-                scan_rows(look, border, class, column).filter(|&row| look.map.at(column, row) == class);
+                scan_rows(context, border, class, column).filter(|&row| context.map.at(column, row) == class);
             2 * found.count() > ROWS
         }));
     }
@@ -73,7 +78,7 @@ impl PostScan {
 /// The rows that are scanned: around the horizon, or from the border of the field downwards; those
 /// at the top of the image if both are above it.
 fn scan_rows(
-    look: &Look<'_>,
+    context: &ImageContext<'_>,
     border: &BorderScan,
     class: ColourClass,
     column: usize,
@@ -82,30 +87,30 @@ fn scan_rows(
     const SPACING: usize = 3;
     let (first, spacing) = match class {
         ColourClass::White => (border.row(column) as usize + 1, 1),
-        _ => ((look.map.horizon(column) + SPACING).saturating_sub((ROWS - 1) * SPACING), SPACING),
+        _ => ((context.map.horizon(column) + SPACING).saturating_sub((ROWS - 1) * SPACING), SPACING),
     };
     (0..ROWS).map(move |row| first.saturating_add(row * spacing))
 }
 
 /// The post in a run of columns, if it is one.
 fn post(
-    look: &Look<'_>,
+    context: &ImageContext<'_>,
     border: &BorderScan,
     paint: GoalPaint,
     class: ColourClass,
     left: usize,
     right: usize,
-) -> Option<Sight> {
-    let (map, step) = (look.map, look.map.step as f64);
+) -> Option<Detection> {
+    let (map, step) = (context.map, context.map.step as f64);
     let middle = (left + right) / 2;
     // If the field fills the image to its upper edge, a leg of a robot and a post look the same.
     if paint == GoalPaint::White && border.row(middle) < 2.0 {
         return None;
     }
-    let start = scan_rows(look, border, class, middle).nth(ROWS / 2)?;
-    let bar = Bar::new(look, class, start, left, right);
-    let foot = bar.last_row(look, start..map.rows);
-    let top = bar.last_row(look, (0..start).rev());
+    let start = scan_rows(context, border, class, middle).nth(ROWS / 2)?;
+    let bar = Bar::new(context, class, start, left, right);
+    let foot = bar.last_row(context, start..map.rows);
+    let top = bar.last_row(context, (0..start).rev());
     let foot_middle = bar.middle_at(foot);
     let width = (right - left) as f64 * step;
     let centre = foot_middle * step;
@@ -115,17 +120,17 @@ fn post(
     if is_cut && (left == 0 || right >= map.columns) {
         return None;
     }
-    let diameter = 2.0 * look.objects.post_radius;
-    let expected = diameter * look.camera.scale(centre, bottom, 0.0);
+    let diameter = 2.0 * context.objects.post_radius;
+    let expected = diameter * context.camera.scale(centre, bottom, 0.0);
     if expected <= 0.0 {
         return None;
     }
     let position = match is_cut {
         // Below the image: the distance follows from the width, which cannot be checked then.
         true => {
-            let ray = look.camera.ray(centre, bottom);
-            let depth = look.camera.focal() * diameter / width;
-            (width >= 1.0).then(|| look.camera.position().xy() + ray.xy() * depth)?
+            let ray = context.camera.ray(centre, bottom);
+            let depth = context.camera.focal() * diameter / width;
+            (width >= 1.0).then(|| context.camera.position().xy() + ray.xy() * depth)?
         }
         false => {
             let ratio = width / expected;
@@ -140,9 +145,9 @@ fn post(
             if below.green < 0.25 || (foot as f32) + 4.0 < border.row(foot_middle as usize) {
                 return None;
             }
-            let near = look.camera.point_at_height(centre, bottom, 0.0)?;
-            let away = near - look.camera.position().xy();
-            near + away.normalize() * look.objects.post_radius
+            let near = context.camera.point_at_height(centre, bottom, 0.0)?;
+            let away = near - context.camera.position().xy();
+            near + away.normalize() * context.objects.post_radius
         }
     };
     let height = (foot + 1 - top) as f64 * step / expected * diameter;
@@ -156,13 +161,14 @@ fn post(
     if !is_high {
         return None;
     }
-    if !bar.stands_alone(look, top, start.max(foot)) || !bar.is_on_carpet(look, border, foot, expected / step)
+    if !bar.stands_alone(context, top, start.max(foot))
+        || !bar.is_on_carpet(context, border, foot, expected / step)
     {
         return None;
     }
     let area =
         PixelBox { left: left as f64 * step, top: top as f64 * step, right: right as f64 * step, bottom };
-    Some(Sight::new(position, area))
+    Some(Detection::new(position, area))
 }
 
 /// A bar of one colour that is upright on the ground, in cells.
@@ -179,10 +185,10 @@ struct Bar {
 }
 
 impl Bar {
-    fn new(look: &Look<'_>, class: ColourClass, row: usize, left: usize, right: usize) -> Bar {
-        let step = look.map.step as f64;
+    fn new(context: &ImageContext<'_>, class: ColourClass, row: usize, left: usize, right: usize) -> Bar {
+        let step = context.map.step as f64;
         let middle = (left + right) as f64 / 2.0;
-        let slope = look.camera.slope_of_vertical(middle * step, row as f64 * step);
+        let slope = context.camera.slope_of_vertical(middle * step, row as f64 * step);
         Bar { class, row, middle, half: (right - left) as f64 / 2.0, slope }
     }
 
@@ -191,25 +197,25 @@ impl Bar {
     }
 
     /// The class of a cell, given by its distance from the middle.
-    fn class_at(&self, look: &Look<'_>, aside: f64, row: usize) -> ColourClass {
-        self.seen_at(look, aside, row).unwrap_or_default()
+    fn class_at(&self, context: &ImageContext<'_>, aside: f64, row: usize) -> ColourClass {
+        self.seen_at(context, aside, row).unwrap_or_default()
     }
 
     /// As [`class_at`](Bar::class_at); none outside the image.
-    fn seen_at(&self, look: &Look<'_>, aside: f64, row: usize) -> Option<ColourClass> {
+    fn seen_at(&self, context: &ImageContext<'_>, aside: f64, row: usize) -> Option<ColourClass> {
         let column = (self.middle_at(row) + aside).floor();
-        (column >= 0.0 && column < look.map.columns as f64).then(|| look.map.at(column as usize, row))
+        (column >= 0.0 && column < context.map.columns as f64).then(|| context.map.at(column as usize, row))
     }
 
     /// The last of the rows that has the colour, with gaps of two rows.
-    fn last_row(&self, look: &Look<'_>, rows: impl Iterator<Item = usize>) -> usize {
+    fn last_row(&self, context: &ImageContext<'_>, rows: impl Iterator<Item = usize>) -> usize {
         let third = self.half * 2.0 / 3.0;
         let mut last = self.row;
         for row in rows {
             if row.abs_diff(last) > 3 {
                 break;
             }
-            let own = [-third, 0.0, third].map(|aside| self.class_at(look, aside, row));
+            let own = [-third, 0.0, third].map(|aside| self.class_at(context, aside, row));
             if own.iter().filter(|class| **class == self.class).count() >= 2 {
                 last = row;
             }
@@ -219,11 +225,11 @@ impl Bar {
 
     /// Whether what is beside it has another class in most rows, unlike in front of a wall. A white
     /// post may stand in front of a white wall.
-    fn stands_alone(&self, look: &Look<'_>, top: usize, bottom: usize) -> bool {
+    fn stands_alone(&self, context: &ImageContext<'_>, top: usize, bottom: usize) -> bool {
         let away = 2.0 * self.half + 2.0;
         let rows = bottom.saturating_sub(top).max(1);
         let is_free = |aside: f64| {
-            2 * (top..bottom).filter(|&row| self.class_at(look, aside, row) == self.class).count() <= rows
+            2 * (top..bottom).filter(|&row| self.class_at(context, aside, row) == self.class).count() <= rows
         };
         self.class == ColourClass::White || (is_free(-away) && is_free(away))
     }
@@ -231,13 +237,19 @@ impl Bar {
     /// Whether there is carpet on both sides of it between the border of the field and its foot:
     /// an arm or a leg has a body beside it. The shaded side of a post may be too dark for its
     /// class, so that it seems narrower than the `expected` cells.
-    fn is_on_carpet(&self, look: &Look<'_>, border: &BorderScan, foot: usize, expected: f64) -> bool {
+    fn is_on_carpet(
+        &self,
+        context: &ImageContext<'_>,
+        border: &BorderScan,
+        foot: usize,
+        expected: f64,
+    ) -> bool {
         let from = border.row(self.middle as usize).max(0.0) as usize + 1;
         let half = self.half.max(expected / 2.0);
         [-1.0, 1.0].into_iter().all(|side| {
             let (mut carpet, mut cells) = (0, 0);
             for aside in [1.5 * half + 1.0, 3.0 * half + 1.0] {
-                let seen = (from..foot).filter_map(|row| self.seen_at(look, side * aside, row));
+                let seen = (from..foot).filter_map(|row| self.seen_at(context, side * aside, row));
                 for class in seen {
                     cells += 1;
                     carpet += usize::from(class == ColourClass::Green);

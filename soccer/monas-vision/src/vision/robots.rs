@@ -1,9 +1,9 @@
 //! Other robots: what stands on the carpet and is as high and wide as a robot.
 
-use super::Look;
+use super::ImageContext;
 use super::border::BorderScan;
 use crate::colour::ColourClass;
-use crate::seen::{Jersey, PixelBox, SeenRobot, Sight};
+use crate::seen::{Detection, Jersey, PixelBox, SeenRobot};
 use crate::{GoalPost, Seen};
 
 /// Least height of what may be a robot, m: higher than a ball.
@@ -31,30 +31,31 @@ pub(crate) struct RobotScan {
 }
 
 impl RobotScan {
-    pub(crate) fn scan(&mut self, look: &Look<'_>, border: &BorderScan, seen: &mut Seen) {
+    pub(crate) fn scan(&mut self, context: &ImageContext<'_>, border: &BorderScan, seen: &mut Seen) {
         self.feet.clear();
-        let columns = (0..look.map.columns).step_by(SPACING);
+        let columns = (0..context.map.columns).step_by(SPACING);
         self.feet.extend(columns.map(|column| {
-            let is_post = seen.posts.iter().any(|post| is_beside(look, post, column));
-            if is_post { None } else { foot(look, border, column) }
+            let is_post = seen.posts.iter().any(|post| is_beside(context, post, column));
+            if is_post { None } else { foot(context, border, column) }
         }));
         self.cut.clear();
         let mut start = 0;
         while start < self.feet.len() {
-            let end = self.end_of_group(look, start);
+            let end = self.end_of_group(context, start);
             let foot = self.feet[start..end].iter().copied().flatten().max();
-            match foot.and_then(|foot| Body::new(look, start, end, foot)) {
+            match foot.and_then(|foot| Body::new(context, start, end, foot)) {
                 // Below the image, the distance of a foot is not known.
-                Some(body) if body.foot + 2 >= look.map.rows => self.cut.push(body.area(look)),
-                Some(body) if body.stands_out(look, &self.feet[start..end]) => {
-                    seen.robots.extend(body.robot(look));
+                Some(body) if body.foot + 2 >= context.map.rows => self.cut.push(body.area(context)),
+                Some(body) if body.stands_out(context, &self.feet[start..end]) => {
+                    seen.robots.extend(body.robot(context));
                 }
                 _ => {}
             }
             start = end.max(start + 1);
         }
-        drop_arms(look, &mut seen.robots);
-        seen.robots.retain(|robot| !self.cut.iter().any(|body| is_part_of(look, &robot.sight.area, body)));
+        drop_arms(context, &mut seen.robots);
+        seen.robots
+            .retain(|robot| !self.cut.iter().any(|body| is_part_of(context, &robot.detection.area, body)));
     }
 
     /// The bodies that the lower edge of the image cuts.
@@ -63,13 +64,13 @@ impl RobotScan {
     }
 
     /// The index after a group of neighbours whose feet are about as far away.
-    fn end_of_group(&self, look: &Look<'_>, start: usize) -> usize {
+    fn end_of_group(&self, context: &ImageContext<'_>, start: usize) -> usize {
         let Some(mut last) = self.feet[start] else { return start };
         let (mut end, mut gap) = (start + 1, 0);
         let mut index = start + 1;
         while index < self.feet.len() && gap <= 2 {
             match self.feet[index] {
-                Some(foot) if is_same_body(look, index, last, foot) => {
+                Some(foot) if is_same_body(context, index, last, foot) => {
                     (last, end, gap) = (foot, index + 1, 0);
                 }
                 _ => gap += 1,
@@ -92,11 +93,11 @@ struct Body {
 
 impl Body {
     /// The body in scanned columns whose lowest foot is given; none if it is something else.
-    fn new(look: &Look<'_>, start: usize, end: usize, foot: usize) -> Option<Body> {
-        let (map, step) = (look.map, look.map.step as f64);
+    fn new(context: &ImageContext<'_>, start: usize, end: usize, foot: usize) -> Option<Body> {
+        let (map, step) = (context.map, context.map.step as f64);
         let (left, right) = (start * SPACING, (end * SPACING).min(map.columns));
         let middle = (left + right) as f64 / 2.0;
-        let scale = look.camera.scale(middle * step, (foot + 1) as f64 * step, 0.0) / step;
+        let scale = context.camera.scale(middle * step, (foot + 1) as f64 * step, 0.0) / step;
         let width = (right - left) as f64 / scale.max(1e-6);
         let is_cut = left == 0 || right + SPACING >= map.columns || foot + 2 >= map.rows;
         if width < LEAST_WIDTH || (width > MOST_WIDTH && !is_cut) {
@@ -112,11 +113,11 @@ impl Body {
 
     /// Whether the colour changes at once at most of its feet, which are given for each scanned
     /// column: light that bleaches the carpet does so little by little.
-    fn stands_out(&self, look: &Look<'_>, feet: &[Option<usize>]) -> bool {
+    fn stands_out(&self, context: &ImageContext<'_>, feet: &[Option<usize>]) -> bool {
         /// Least change of luma, as a part of that from carpet to white, and of chroma, as a part
         /// of that of the carpet.
         const LEAST: f32 = 0.3;
-        let model = look.table.model();
+        let model = context.table.model();
         let least_luma = LEAST * (model.white_luma - model.green_luma);
         let chroma = libm::hypotf(model.green[0] - model.white[0], model.green[1] - model.white[1]);
         let least_chroma = LEAST * chroma * model.green_luma;
@@ -125,8 +126,8 @@ impl Body {
             let Some(foot) = *foot else { continue };
             let column = self.left + index * SPACING;
             // Two cells away from the foot, so that blur does not matter.
-            let above = look.mean_yuv(column, foot.saturating_sub(4)..foot.saturating_sub(1));
-            let below = look.mean_yuv(column, foot + 2..foot + 5);
+            let above = context.mean_yuv(column, foot.saturating_sub(4)..foot.saturating_sub(1));
+            let below = context.mean_yuv(column, foot + 2..foot + 5);
             let change = [0, 1, 2].map(|k| above[k] - below[k]);
             let is_sharp = change[0].abs() > least_luma || libm::hypotf(change[1], change[2]) > least_chroma;
             (sharp, all) = (sharp + usize::from(is_sharp), all + 1);
@@ -135,8 +136,8 @@ impl Body {
     }
 
     /// The pixels that it takes at least.
-    fn area(&self, look: &Look<'_>) -> PixelBox {
-        let step = look.map.step as f64;
+    fn area(&self, context: &ImageContext<'_>) -> PixelBox {
+        let step = context.map.step as f64;
         let top = (self.foot as f64 - HEIGHT * self.scale).max(0.0);
         PixelBox {
             left: self.left as f64 * step,
@@ -146,22 +147,22 @@ impl Body {
         }
     }
 
-    fn robot(&self, look: &Look<'_>) -> Option<SeenRobot> {
-        let area = self.area(look);
-        let near = look.camera.point_at_height((area.left + area.right) / 2.0, area.bottom, 0.0)?;
-        let away = near - look.camera.position().xy();
+    fn robot(&self, context: &ImageContext<'_>) -> Option<SeenRobot> {
+        let area = self.area(context);
+        let near = context.camera.point_at_height((area.left + area.right) / 2.0, area.bottom, 0.0)?;
+        let away = near - context.camera.position().xy();
         let position = near + away.normalize() * HALF_DEPTH;
-        Some(SeenRobot { sight: Sight::new(position, area), jersey: self.jersey(look) })
+        Some(SeenRobot { detection: Detection::new(position, area), jersey: self.jersey(context) })
     }
 
     /// The colour of the jersey: the more frequent one between hips and shoulders.
-    fn jersey(&self, look: &Look<'_>) -> Jersey {
+    fn jersey(&self, context: &ImageContext<'_>) -> Jersey {
         let Body { left, right, foot, scale } = *self;
         let row = |height: f64| (foot as f64 - height * scale).max(0.0) as usize;
         let (mut blue, mut red, mut all) = (0u32, 0u32, 0u32);
         for y in row(0.5)..row(0.22) {
             for x in left..right {
-                let class = look.map.at(x, y);
+                let class = context.map.at(x, y);
                 blue += u32::from(class == ColourClass::Blue);
                 red += u32::from(matches!(class, ColourClass::Red | ColourClass::Orange));
                 all += 1;
@@ -177,19 +178,19 @@ impl Body {
 
 /// Whether what seems to be a robot is a part of a body that the lower edge of the image cuts: it
 /// touches the body, or it is an arm.
-fn is_part_of(look: &Look<'_>, area: &PixelBox, body: &PixelBox) -> bool {
+fn is_part_of(context: &ImageContext<'_>, area: &PixelBox, body: &PixelBox) -> bool {
     let is_beside = |gap: f64| area.left <= body.right + gap && area.right >= body.left - gap;
-    let touches = is_beside((2 * SPACING * look.map.step) as f64);
-    let is_narrow = area.right - area.left < ARM * ground_scale(look, area);
-    touches || (is_narrow && is_beside(ARM_GAP * ground_scale(look, body)))
+    let touches = is_beside((2 * SPACING * context.map.step) as f64);
+    let is_narrow = area.right - area.left < ARM * ground_scale(context, area);
+    touches || (is_narrow && is_beside(ARM_GAP * ground_scale(context, body)))
 }
 
 /// Pixels per metre where the lower edge of a box is on the ground.
-fn ground_scale(look: &Look<'_>, area: &PixelBox) -> f64 {
-    look.camera.scale((area.left + area.right) / 2.0, area.bottom, 0.0)
+fn ground_scale(context: &ImageContext<'_>, area: &PixelBox) -> f64 {
+    context.camera.scale((area.left + area.right) / 2.0, area.bottom, 0.0)
 }
 
-impl Look<'_> {
+impl ImageContext<'_> {
     /// The mean luma and chroma of rows of cells in a column; those below the image do not count.
     fn mean_yuv(&self, column: usize, rows: std::ops::Range<usize>) -> [f32; 3] {
         let (step, rows) = (self.map.step, rows.start..rows.end.min(self.map.rows));
@@ -203,13 +204,13 @@ impl Look<'_> {
 
 /// Removes arms beside a robot: their lower ends are above the ground, so they seem to be narrow
 /// and farther away.
-fn drop_arms(look: &Look<'_>, robots: &mut Vec<SeenRobot>) {
+fn drop_arms(context: &ImageContext<'_>, robots: &mut Vec<SeenRobot>) {
     let width = |area: &PixelBox| area.right - area.left;
     let is_arm = |one: &SeenRobot, of: &SeenRobot| {
-        let (arm, body) = (&one.sight.area, &of.sight.area);
-        let gap = ARM_GAP * ground_scale(look, body);
-        one.sight.distance > of.sight.distance
-            && width(arm) < ARM * ground_scale(look, arm)
+        let (arm, body) = (&one.detection.area, &of.detection.area);
+        let gap = ARM_GAP * ground_scale(context, body);
+        one.detection.distance > of.detection.distance
+            && width(arm) < ARM * ground_scale(context, arm)
             && arm.left < body.right + gap
             && arm.right > body.left - gap
     };
@@ -224,23 +225,23 @@ fn drop_arms(look: &Look<'_>, robots: &mut Vec<SeenRobot>) {
 }
 
 /// Whether a column shows a post that was found.
-fn is_beside(look: &Look<'_>, post: &GoalPost, column: usize) -> bool {
-    let x = column as f64 * look.map.step as f64;
-    let margin = 0.3 * (post.sight.area.right - post.sight.area.left) + 2.0;
-    (post.sight.area.left - margin..post.sight.area.right + margin).contains(&x)
+fn is_beside(context: &ImageContext<'_>, post: &GoalPost, column: usize) -> bool {
+    let x = column as f64 * context.map.step as f64;
+    let margin = 0.3 * (post.detection.area.right - post.detection.area.left) + 2.0;
+    (post.detection.area.left - margin..post.detection.area.right + margin).contains(&x)
 }
 
 /// Whether two neighbouring columns show feet at about the same distance.
-fn is_same_body(look: &Look<'_>, index: usize, one: usize, other: usize) -> bool {
-    let step = look.map.step as f64;
+fn is_same_body(context: &ImageContext<'_>, index: usize, one: usize, other: usize) -> bool {
+    let step = context.map.step as f64;
     let x = (index * SPACING) as f64 * step;
-    let scale = look.camera.scale(x, one.max(other) as f64 * step, 0.0) / step;
+    let scale = context.camera.scale(x, one.max(other) as f64 * step, 0.0) / step;
     (one.abs_diff(other) as f64) < 0.14 * scale + 2.0
 }
 
 /// The foot of the nearest thing in a column that is high enough.
-fn foot(look: &Look<'_>, border: &BorderScan, column: usize) -> Option<usize> {
-    let (map, step) = (look.map, look.map.step as f64);
+fn foot(context: &ImageContext<'_>, border: &BorderScan, column: usize) -> Option<usize> {
+    let (map, step) = (context.map, context.map.step as f64);
     let x = (column as f64 + 0.5) * step;
     let edge = border.row(column);
     let (mut foot, mut carpet) = (None, 0);
@@ -263,7 +264,7 @@ fn foot(look: &Look<'_>, border: &BorderScan, column: usize) -> Option<usize> {
             }
             Some(start) => {
                 carpet = 0;
-                let scale = look.camera.scale(x, (start + 1) as f64 * step, 0.0) / step;
+                let scale = context.camera.scale(x, (start + 1) as f64 * step, 0.0) / step;
                 let height = (start - row) as f64;
                 let is_inside = start as f64 > f64::from(edge) + 2.0 + 0.05 * scale;
                 if height >= LEAST_HEIGHT * scale && scale > 0.0 {

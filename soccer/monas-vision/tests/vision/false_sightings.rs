@@ -113,5 +113,5 @@ fn a_robot_in_a_patch_of_light_is_seen() {
         RobotFigure { position: Point2::new(2.2, 0.0), heading: 0.3, jersey: Jersey::Red, lies: false };
     let seen = see(vec![robot], &camera(0.15), |pixels| bleach(pixels, [320.0, 130.0], 100.0));
     assert_eq!(seen.robots.len(), 1, "{:?}", seen.robots);
-    assert!((seen.robots[0].sight.distance - 2.2).abs() < 0.2, "{:?}", seen.robots);
+    assert!((seen.robots[0].detection.distance - 2.2).abs() < 0.2, "{:?}", seen.robots);
 }

@@ -82,7 +82,7 @@ pub(crate) fn execute(
     let end = arguments.length.unwrap_or_else(|| Duration::from_secs_f64(recorded.end_seconds()));
     running.advance(arguments.at).map_err(failed(format))?;
     let mut texts = Vec::new();
-    for Planned { host, text, change } in changes {
+    for PlannedChange { host, text, change } in changes {
         let changed = running.change(&host, change).map_err(failed(format))?;
         if !changed.done {
             let reasons: Vec<&str> =
@@ -98,7 +98,8 @@ pub(crate) fn execute(
     let other = Recording::open(&path).map_err(failed(format))?;
     let other = TapeRun::new("", other, &charts, scene()).map_err(failed(format))?;
     let end = end.as_secs_f64().min(recorded.end_seconds());
-    let futures = Futures { recorded: &recorded, other: &other, at: arguments.at.as_secs_f64(), end, texts };
+    let futures =
+        RunComparison { recorded: &recorded, other: &other, at: arguments.at.as_secs_f64(), end, texts };
     futures.write(console, format)
 }
 
@@ -118,13 +119,13 @@ fn plan(
 }
 
 /// A change of one agent.
-struct Planned {
+struct PlannedChange {
     host: String,
     text: String,
     change: Change,
 }
 
-fn changes(arguments: &WhatIfArguments, tape: &TapeRun) -> Result<Vec<Planned>, String> {
+fn changes(arguments: &WhatIfArguments, tape: &TapeRun) -> Result<Vec<PlannedChange>, String> {
     let mut hosts: Vec<&str> = tape.charts().iter().map(|chart| chart.host.as_str()).collect();
     hosts.dedup();
     if let Some(unknown) = arguments.hosts.iter().find(|host| !hosts.contains(&host.as_str())) {
@@ -171,7 +172,7 @@ fn changes(arguments: &WhatIfArguments, tape: &TapeRun) -> Result<Vec<Planned>, 
             text: model.to_text(),
             ..Change::default()
         };
-        Planned { host: chart.host, text: format!("{}: {}", chart.agent, texts.join(", ")), change }
+        PlannedChange { host: chart.host, text: format!("{}: {}", chart.agent, texts.join(", ")), change }
     }));
     Ok(planned)
 }
@@ -191,7 +192,7 @@ fn parse_guard(text: &str) -> Result<(&str, Expression), String> {
 }
 
 /// The changes of a setting `agent.NAME.KEY=VALUE`, on each host with such an agent.
-fn setting_changes(text: &str, hosts: &[&str], tape: &TapeRun) -> Result<Vec<Planned>, String> {
+fn setting_changes(text: &str, hosts: &[&str], tape: &TapeRun) -> Result<Vec<PlannedChange>, String> {
     let wrong = || format!("`{text}` is not agent.NAME.KEY=VALUE");
     let (path, value) = text.split_once('=').ok_or_else(wrong)?;
     let (agent, key) = path.strip_prefix("agent.").and_then(|rest| rest.split_once('.')).ok_or_else(wrong)?;
@@ -205,13 +206,13 @@ fn setting_changes(text: &str, hosts: &[&str], tape: &TapeRun) -> Result<Vec<Pla
             let settings = vec![Setting { key: key.to_owned(), value: value.to_owned() }];
             let (action, agent) = (Action::Set.into(), agent.to_owned());
             let change = Change { action, agent, settings, ..Change::default() };
-            Planned { host: (*host).to_owned(), text: text.to_owned(), change }
+            PlannedChange { host: (*host).to_owned(), text: text.to_owned(), change }
         })
         .collect())
 }
 
 /// The recorded future and the other one.
-struct Futures<'a> {
+struct RunComparison<'a> {
     recorded: &'a TapeRun,
     other: &'a TapeRun,
     /// The moment of the change, s.
@@ -221,7 +222,7 @@ struct Futures<'a> {
     texts: Vec<String>,
 }
 
-impl Futures<'_> {
+impl RunComparison<'_> {
     fn write(&self, console: &mut CommandOutput<'_>, format: Format) -> Result<Exit, CommandFailure> {
         let difference = self.recorded.first_difference(self.other, self.end);
         if let Some(before) = difference.as_ref().filter(|difference| difference.time < self.at) {

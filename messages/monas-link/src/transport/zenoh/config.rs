@@ -71,7 +71,7 @@ impl ZenohSettings {
     }
 
     pub(super) fn config(&self, access: &AccessList) -> Result<Config, Error> {
-        let mut words = Words(Config::default());
+        let mut words = ZenohConfig(Config::default());
         words.set("mode", text("peer"))?;
         words.set("listen/endpoints", list(&self.listen))?;
         words.set("connect/endpoints", list(&self.connect))?;
@@ -96,9 +96,9 @@ impl ZenohSettings {
     }
 }
 
-struct Words(Config);
+struct ZenohConfig(Config);
 
-impl Words {
+impl ZenohConfig {
     fn set(&mut self, key: &str, value: String) -> Result<(), Error> {
         self.0.insert_json5(key, &value).map_err(|error| {
             Error::new(ErrorKind::Settings, format!("zenoh does not take {value} for {key}: {error}"))
@@ -195,7 +195,7 @@ mod tests {
             "robot_1 publish soccer/**\nrobot_2 publish soccer/ball\n* publish soccer/hello",
         );
         assert_eq!(errors, []);
-        let mut words = Words(Config::default());
+        let mut words = ZenohConfig(Config::default());
         words.set("access_control", access_control(&access, "monas")).unwrap();
         let rules = words.0.get_json("access_control").unwrap();
         assert!(rules.contains("monas/robot_2/m/soccer/ball"), "{rules}");

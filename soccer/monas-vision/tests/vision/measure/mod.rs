@@ -8,7 +8,7 @@
 use std::fmt;
 
 use monas_vision::render::{FieldMarkings, Light, Renderer, RobotFigure, Scene};
-use monas_vision::{Camera, FieldObjects, HeadPose, Jersey, LineSegment, Seen, Sight, Vision};
+use monas_vision::{Camera, Detection, FieldObjects, HeadPose, Jersey, LineSegment, Seen, Vision};
 use nalgebra::{Isometry2, Isometry3, Point2, Point3, UnitQuaternion, Vector2, Vector3};
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg64;
@@ -101,10 +101,10 @@ impl Tally {
         f64::from(self.found) / f64::from(self.shown.max(1))
     }
 
-    fn note(&mut self, sight: &Sight, truth: &Point2<f64>) {
+    fn note(&mut self, detection: &Detection, truth: &Point2<f64>) {
         let distance = truth.coords.norm();
-        self.distance_errors.push((sight.distance - distance).abs() / distance);
-        self.bearing_errors.push((sight.bearing - libm::atan2(truth.y, truth.x)).abs());
+        self.distance_errors.push((detection.distance - distance).abs() / distance);
+        self.bearing_errors.push((detection.bearing - libm::atan2(truth.y, truth.x)).abs());
     }
 
     fn add(&mut self, other: &Tally) {
@@ -399,13 +399,13 @@ impl View {
             && !self.is_hidden(ball, None, radius)
         {
             tally.shown += 1;
-            if let Some(sight) = seen.ball.as_ref().filter(|sight| is_near(sight, &own, 0.2)) {
+            if let Some(detection) = seen.ball.as_ref().filter(|detection| is_near(detection, &own, 0.2)) {
                 tally.found += 1;
-                tally.note(sight, &own);
+                tally.note(detection, &own);
             }
         }
-        let is_true = |sight: &Sight| truth.is_some_and(|(_, own)| is_near(sight, &own, 0.25));
-        tally.wrong += u32::from(seen.ball.as_ref().is_some_and(|sight| !is_true(sight)));
+        let is_true = |detection: &Detection| truth.is_some_and(|(_, own)| is_near(detection, &own, 0.25));
+        tally.wrong += u32::from(seen.ball.as_ref().is_some_and(|detection| !is_true(detection)));
     }
 
     fn compare_posts(&self, seen: &Seen, camera: &Camera, tally: &mut Tally) {
@@ -417,13 +417,14 @@ impl View {
                 continue;
             }
             tally.shown += 1;
-            if let Some(found) = seen.posts.iter().find(|found| is_near(&found.sight, &own, 0.2)) {
+            if let Some(found) = seen.posts.iter().find(|found| is_near(&found.detection, &own, 0.2)) {
                 tally.found += 1;
-                tally.note(&found.sight, &own);
+                tally.note(&found.detection, &own);
             }
         }
-        let is_true = |sight: &Sight| self.posts().any(|post| is_near(sight, &self.to_robot(post), 0.3));
-        tally.wrong += seen.posts.iter().filter(|post| !is_true(&post.sight)).count() as u32;
+        let is_true =
+            |detection: &Detection| self.posts().any(|post| is_near(detection, &self.to_robot(post), 0.3));
+        tally.wrong += seen.posts.iter().filter(|post| !is_true(&post.detection)).count() as u32;
     }
 
     fn compare_robots(&self, seen: &Seen, camera: &Camera, measures: &mut Measures) {
@@ -438,16 +439,17 @@ impl View {
                 continue;
             }
             tally.shown += 1;
-            if let Some(found) = seen.robots.iter().find(|found| is_near(&found.sight, &own, 0.2)) {
+            if let Some(found) = seen.robots.iter().find(|found| is_near(&found.detection, &own, 0.2)) {
                 tally.found += 1;
-                tally.note(&found.sight, &own);
+                tally.note(&found.detection, &own);
                 measures.jerseys += 1;
                 measures.wrong_jerseys += u32::from(found.jersey != robot.jersey);
             }
         }
         let things = || self.scene.robots.iter().map(|robot| robot.position).chain(self.posts());
-        let is_true = |sight: &Sight| things().any(|thing| is_near(sight, &self.to_robot(thing), 0.35));
-        tally.wrong += seen.robots.iter().filter(|robot| !is_true(&robot.sight)).count() as u32;
+        let is_true =
+            |detection: &Detection| things().any(|thing| is_near(detection, &self.to_robot(thing), 0.35));
+        tally.wrong += seen.robots.iter().filter(|robot| !is_true(&robot.detection)).count() as u32;
     }
 
     /// The points of lines that are in view and in range, in the frame of the robot.
@@ -571,8 +573,8 @@ fn within(camera: &Camera, point: Point3<f64>, radius: f64) -> bool {
 }
 
 /// Whether a sighting is of an object: within a part of its distance, and at least 12 cm.
-fn is_near(sight: &Sight, truth: &Point2<f64>, part: f64) -> bool {
-    (sight.position() - truth).norm() < (part * truth.coords.norm()).max(0.12)
+fn is_near(detection: &Detection, truth: &Point2<f64>, part: f64) -> bool {
+    (detection.position() - truth).norm() < (part * truth.coords.norm()).max(0.12)
 }
 
 /// A line of the field, in its frame.
