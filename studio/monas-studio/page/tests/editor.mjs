@@ -317,6 +317,24 @@ const TESTS = {
     assert.ok(!(await isWarned()), 'nothing has changes');
   },
 
+  async 'what is typed in a field is kept when another file is chosen at once'({ page, folder }) {
+    await openModel(page, 'attacker.srm');
+    await until(page, 'the chart', () => document.querySelector('.drawing [data-state$="RightKick"]'));
+    await page.locator('.drawing polyline.target[aria-label*="RightKick [Ball.y"]').first().focus();
+    await page.keyboard.press('Enter');
+    await page.locator('.inspector .cm-content').click();
+    await page.keyboard.press('Control+a');
+    await page.keyboard.type('[0 > Ball.y]');
+    await page.locator('select[aria-label="Model"]').focus();
+    await openModel(page, 'roles.srm');
+    await until(page, 'the changed file', () => /1 other file not saved/.test(document.querySelector('.panel.text header')?.textContent ?? ''));
+    assert.equal(await textOf(page), saved(folder, 'roles.srm'));
+    await openModel(page, 'attacker.srm');
+    assert.match(await textOf(page), /CONDITION -> RightKick : \[0 > Ball\.y\]/);
+    await page.locator('button', { hasText: 'Undo' }).click();
+    assert.equal(await textOf(page), saved(folder, 'attacker.srm'));
+  },
+
   async 'a file that cannot be edited shows nothing of another'({ page, folder }) {
     await openModel(page, 'roles.srm');
     await page.locator('select[aria-label="Model"]').selectOption({ label: 'mixed.srm' });
@@ -388,6 +406,17 @@ async function swapTest({ page, shot }) {
   await until(page, 'the chart', () => document.querySelectorAll('.drawing .node.BASIC').length > 10);
   assert.equal(await textOf(page), original('attacker.srm'));
   assert.doesNotMatch(await page.locator('.panel.text header').innerText(), /not saved/);
+  // what is typed in a field is kept when another view is chosen at once
+  await page.locator('.drawing polyline.target[aria-label*="LeftKick [Ball.y"]').first().focus();
+  await page.keyboard.press('Enter');
+  await page.locator('.inspector .cm-content').click();
+  await page.keyboard.press('Control+a');
+  await page.keyboard.type('[0 <= Ball.y]');
+  await page.locator('[role=tab]', { hasText: 'Overview' }).click();
+  await page.locator('[role=tab]', { hasText: 'Editor' }).click();
+  await untilText(page, 'the expression', /CONDITION -> LeftKick : \[0 <= Ball\.y\]/);
+  await page.locator('button', { hasText: 'Undo' }).click();
+  assert.equal(await textOf(page), original('attacker.srm'));
   await page.locator('button', { hasText: 'Swap…' }).click();
   const select = page.locator('select[aria-label="Running chart"]');
   await until(page, 'the running charts', () => [...document.querySelectorAll('select[aria-label="Running chart"] option')].some((one) => one.textContent?.includes('blue-2')));

@@ -19,7 +19,7 @@ export interface Outline {
 }
 
 /** How much there is of what an edit names by number: numbers hold while that is the same. */
-function shapeOf(outline: Outline | null, edit: ModelEdit): string {
+function shapeOf(outline: { picture?: Picture | null; parts?: ModelParts } | null, edit: ModelEdit): string {
   const parts = outline?.parts;
   switch (edit.edit) {
     case 'add_item':
@@ -84,7 +84,7 @@ export class ModelEditor {
 
   /** The number of the file that is shown, or -1. */
   get file(): number {
-    return this.#client.models?.files.indexOf(this.name) ?? -1;
+    return this.#number(this.name);
   }
 
   get isWritable(): boolean {
@@ -156,7 +156,7 @@ export class ModelEditor {
     if (!this.#files.has(this.name)) {
       void this.open(this.file);
     } else if (this.#view && this.#inView === this.name && this.outline?.text !== this.text) {
-      this.#changed();
+      this.#changed(this.name);
     }
   }
 
@@ -197,10 +197,9 @@ export class ModelEditor {
       this.outcome = { done: false, lines: ['not saved: this page may not write files'] };
       return;
     }
-    const file = this.#client.models?.files.indexOf(name) ?? -1;
     const text = known.text;
     const written = text.replaceAll('\n', known.lineBreak);
-    const reply = await this.#client.model('save', { file, text: written, revision: known.revision });
+    const reply = await this.#client.model('save', { file: this.#number(name), text: written, revision: known.revision });
     if (reply.done && reply.revision) {
       [known.revision, known.saved] = [reply.revision, text];
       this.#noteUnsaved();
@@ -232,42 +231,59 @@ export class ModelEditor {
   }
 
   /**
-   * Makes an edit, after those before: replacements in the text, which undo takes back together.
-   * States and transitions are given by their numbers in the present outline.
+   * Makes an edit of the file that is shown, after those before: replacements in the text, which
+   * undo takes back together. States and transitions are given by their numbers in the present
+   * outline. Another file may be shown before the edit is made.
    */
   edit(edit: ModelEdit): Promise<boolean> {
-    const known = this.outline;
-    const made = this.#edits.then(() => this.#make(edit, known));
+    const { name, outline } = this;
+    const made = this.#edits.then(async () => {
+      const reason = await this.#make(edit, name, outline);
+      if (reason !== null) {
+        this.outcome = { done: false, lines: [name === this.name ? reason : `${name}: ${reason}`] };
+      }
+      return reason === null;
+    });
     this.#edits = made;
     return made;
   }
 
-  async #make(edit: ModelEdit, known: Outline | null): Promise<boolean> {
-    const view = this.#view;
-    if (this.outline?.text !== this.text) {
-      await this.#understand();
-    }
-    const text = this.text;
-    if (!this.outline || this.outline.text !== text || shapeOf(this.outline, edit) !== shapeOf(known, edit)) {
-      this.outcome = { done: false, lines: ['the text has changed meanwhile: once more, please'] };
-      return false;
+  /** Makes an edit. Returns why it is not possible. */
+  async #make(edit: ModelEdit, name: string, known: Outline | null): Promise<string | null> {
+    const isOther = 'the text has changed meanwhile: once more, please';
+    const text = this.#files.get(name)?.text ?? '';
+    const present = known?.text === text ? known : await this.#client.model('outline', { file: this.#number(name), text });
+    if (shapeOf(present, edit) !== shapeOf(known, edit)) {
+      return isOther;
     }
     const given = Object.fromEntries(Object.entries(edit).filter(([, value]) => value !== null));
     const reply = await this.#client.model('edit', { text, edit: given });
     if (!reply.done || !reply.edits) {
-      this.outcome = { done: false, lines: [reply.reason ?? 'the edit is not possible'] };
-      return false;
+      return reply.reason ?? 'the edit is not possible';
     }
-    if (!view || this.text !== text) {
-      this.outcome = { done: false, lines: ['the text has changed meanwhile: once more, please'] };
-      return false;
+    if (this.#files.get(name)?.text !== text) {
+      return isOther;
     }
     this.outcome = null;
     if (reply.edits.length > 0) {
-      view.dispatch({ changes: reply.edits, userEvent: 'input.drawing' });
-      await this.#understand();
+      this.#replace(name, reply.edits);
+      if (name === this.name) {
+        await this.#understand();
+      }
     }
-    return true;
+    return null;
+  }
+
+  /** Makes replacements in the text of a file, which may not be shown any more. */
+  #replace(name: string, changes: NonNullable<ModelReply['edits']>): void {
+    const known = this.#files.get(name);
+    const change = { changes, userEvent: 'input.drawing' };
+    if (this.#view && this.#inView === name) {
+      this.#view.dispatch(change);
+    } else if (known) {
+      known.state = known.state.update(change).state;
+      this.#changed(name);
+    }
   }
 
   completeExpression(expression: string, at: number): Promise<ModelReply> {
@@ -305,9 +321,14 @@ export class ModelEditor {
     }
   }
 
+  /** The number of a file in the list of models, or -1. */
+  #number(name: string): number {
+    return this.#client.models?.files.indexOf(name) ?? -1;
+  }
+
   #newState(doc: string, isWritable: boolean): EditorState {
     const ask = (at: number) => this.#client.model('complete', { text: this.text, at });
-    const change = () => this.#changed();
+    const change = () => this.#changed(this.#inView);
     return EditorState.create({ doc, extensions: textExtensions(ask, isWritable, () => void this.save(), change) });
   }
 
@@ -343,7 +364,7 @@ export class ModelEditor {
     this.outline = null;
     this.checked = null;
     this.isLoading = false;
-    this.#changed();
+    this.#changed(name);
     void this.#understand();
   }
 
@@ -363,16 +384,20 @@ export class ModelEditor {
     this.unsaved = changed.map(([name]) => name);
   }
 
-  #changed(): void {
-    const known = this.#files.get(this.#inView);
+  #changed(name: string): void {
+    const known = this.#files.get(name);
     if (!known) {
       return;
     }
-    // A file may be read while the editor is not shown.
-    const state = this.#view?.state ?? known.state;
-    this.text = state.doc.toString();
-    known.text = this.text;
+    const isInView = name === this.#inView;
+    // A file may be read or edited while the editor is not shown.
+    const state = (isInView ? this.#view?.state : null) ?? known.state;
+    known.text = state.doc.toString();
     this.#noteUnsaved();
+    if (!isInView) {
+      return;
+    }
+    this.text = known.text;
     [this.canUndo, this.canRedo] = [undoDepth(state) > 0, redoDepth(state) > 0];
     clearTimeout(this.#outlineTimer);
     clearTimeout(this.#checkTimer);

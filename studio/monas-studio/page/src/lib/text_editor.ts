@@ -109,6 +109,8 @@ export function expressionExtensions(ask: Ask, label: string, onenter: () => voi
     EditorState.transactionFilter.of((transaction) => (transaction.newDoc.lines > 1 ? [] : transaction)),
     EditorView.contentAttributes.of({ 'aria-label': label, spellcheck: 'false', autocapitalize: 'off' }),
     EditorView.updateListener.of((update) => update.docChanged && onchange(update.state.doc.toString())),
+    // As other fields do: another file may be chosen next.
+    EditorView.domEventHandlers({ blur: () => onenter() }),
     keymap.of([{ key: 'Mod-s', run: () => (onsave(), true), preventDefault: true }, ...completionKeymap, { key: 'Enter', run: () => (onenter(), true) }, ...historyKeymap, ...defaultKeymap]),
   ];
 }
