@@ -98,12 +98,13 @@ impl ModelWorkspace {
     /// A file's text, and the revision by which a page says what it has read.
     pub(crate) fn open(&self, file: usize) -> Result<Value, String> {
         let file = self.file(file)?;
-        let text = file.read()?;
-        Ok(json!({"done": true, "revision": revision(&text), "text": text}))
+        let text = file.read()?.ok_or_else(|| format!("{}: the file was deleted", file.name))?;
+        Ok(json!({"done": true, "revision": revision(Some(&text)), "text": text}))
     }
 
     /// Replaces a file if it still has the revision that the page has read; otherwise the reply has
-    /// what the file contains now.
+    /// the present revision and text, which is null if the file was deleted. A page that sends that
+    /// revision knows what it replaces.
     pub(crate) fn save(&self, file: usize, text: &str, known: &str) -> Result<Value, String> {
         let file = self.file(file)?;
         if text.len() as u64 > FILE_LIMIT {
@@ -111,12 +112,13 @@ impl ModelWorkspace {
         }
         let _saving = self.saving.lock().unwrap_or_else(PoisonError::into_inner);
         let present = file.read()?;
-        if revision(&present) != known {
+        let present_revision = revision(present.as_deref());
+        if present_revision != known {
             return Ok(json!({"done": false, "reason": "the file has changed since it was read",
-                "revision": revision(&present), "text": present}));
+                "revision": present_revision, "text": present}));
         }
         monas_files::write(&file.path, text).map_err(|error| format!("{}: {error}", file.name))?;
-        Ok(json!({"done": true, "revision": revision(text)}))
+        Ok(json!({"done": true, "revision": revision(Some(text))}))
     }
 
     fn file(&self, file: usize) -> Result<&ModelFile, String> {
@@ -125,13 +127,18 @@ impl ModelWorkspace {
 }
 
 impl ModelFile {
-    /// Reads the text. The path leads over no link, since links are followed when it is given: one
-    /// that has taken its place since would lead elsewhere.
-    fn read(&self) -> Result<String, String> {
+    /// Reads the text; there is none if the file was deleted. The path leads over no link, since
+    /// links are followed when it is given: one that has taken its place since would lead
+    /// elsewhere.
+    fn read(&self) -> Result<Option<String>, String> {
         if self.path.is_symlink() {
             return Err(format!("{}: the file was replaced by a link", self.name));
         }
-        read_text(&self.path).map_err(|error| format!("{}: {error}", self.name))
+        match read_text(&self.path) {
+            Ok(text) => Ok(Some(text)),
+            Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
+            Err(error) => Err(format!("{}: {error}", self.name)),
+        }
     }
 }
 
@@ -167,8 +174,9 @@ fn read_text(path: &Path) -> io::Result<String> {
     fs::read_to_string(path)
 }
 
-fn revision(text: &str) -> String {
-    blake3::hash(text.as_bytes()).to_hex().to_string()
+/// The revision of a text; that of a deleted file is empty.
+fn revision(text: Option<&str>) -> String {
+    text.map_or_else(String::new, |text| blake3::hash(text.as_bytes()).to_hex().to_string())
 }
 
 impl std::fmt::Debug for ModelWorkspace {

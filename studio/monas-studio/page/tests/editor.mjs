@@ -1,7 +1,7 @@
 // The editor of models in headless Chromium, on copies of real models and on a real run:
 // `MONAS=path/to/monas npm test`. Screenshots are written to tests/screenshots.
 import assert from 'node:assert/strict';
-import { copyFileSync, mkdtempSync, readFileSync, writeFileSync } from 'node:fs';
+import { copyFileSync, existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
@@ -357,6 +357,22 @@ const TESTS = {
     });
     await until(page, 'it is saved', () => /saved/.test(document.querySelector('.editor .outcome')?.textContent ?? ''));
     await page.waitForTimeout(300);
+    assert.equal(await page.locator('.conflict').count(), 0);
+    assert.equal(saved(folder, 'roles.srm'), await textOf(page));
+    await page.locator('button', { hasText: 'Undo' }).click();
+    await save(page);
+  },
+
+  async 'a file that was deleted is written again, if that is wanted'({ page, folder }) {
+    await openModel(page, 'roles.srm');
+    rmSync(join(folder, 'roles.srm'));
+    await goBehind(page, 'Role');
+    await page.keyboard.type('s');
+    await page.keyboard.press('Control+s');
+    await until(page, 'that it was deleted', () => /was deleted/.test(document.querySelector('.conflict')?.textContent ?? ''));
+    assert.ok(!existsSync(join(folder, 'roles.srm')));
+    await page.locator('.conflict button', { hasText: 'Save mine' }).click();
+    await until(page, 'it is saved', () => /saved/.test(document.querySelector('.editor .outcome')?.textContent ?? ''));
     assert.equal(await page.locator('.conflict').count(), 0);
     assert.equal(saved(folder, 'roles.srm'), await textOf(page));
     await page.locator('button', { hasText: 'Undo' }).click();

@@ -125,6 +125,27 @@ fn a_file_that_another_has_changed_is_not_overwritten() {
 }
 
 #[test]
+fn a_deleted_file_is_written_again_only_by_a_page_that_knows_of_it() {
+    let models = Models::local();
+    let mut viewer = Viewer::open(&models.studio).unwrap();
+    let opened = ask(&mut viewer, json!({"type": "model open", "file": 1}));
+    fs::remove_file(models.path("b.srm")).unwrap();
+    let save =
+        |revision: &Value| json!({"type": "model save", "file": 1, "text": "mine\n", "revision": revision});
+    let refused = ask(&mut viewer, save(&opened["revision"]));
+    assert_eq!((&refused["done"], &refused["text"]), (&json!(false), &Value::Null));
+    assert!(!models.path("b.srm").exists());
+    // another program has written it meanwhile
+    fs::write(models.path("b.srm"), "theirs\n").unwrap();
+    assert_eq!(ask(&mut viewer, save(&refused["revision"]))["text"], "theirs\n");
+    fs::remove_file(models.path("b.srm")).unwrap();
+    let unread = ask(&mut viewer, json!({"type": "model open", "file": 1}));
+    assert!(unread["reason"].as_str().unwrap().ends_with("b.srm: the file was deleted"), "{unread}");
+    assert_eq!(ask(&mut viewer, save(&refused["revision"]))["done"], true);
+    assert_eq!(models.text("b.srm"), "mine\n");
+}
+
+#[test]
 fn a_text_that_could_not_be_opened_again_is_not_saved() {
     let models = Models::local();
     let mut viewer = Viewer::open(&models.studio).unwrap();

@@ -58,8 +58,8 @@ export class ModelEditor {
   checked = $state.raw<{ text: string; findings: ModelFinding[]; stopped: boolean } | null>(null);
   isChecking = $state(false);
   outcome = $state.raw<Outcome | null>(null);
-  /** The file as it is on disk now, if it has changed since it was read. */
-  conflict = $state.raw<{ text: string; revision: string } | null>(null);
+  /** The file as it is on disk now, if it has changed since it was read; without a text if it was deleted. */
+  conflict = $state.raw<{ text: string | null; revision: string } | null>(null);
   canUndo = $state(false);
   canRedo = $state(false);
   /** The names of all files with changes that are not saved. */
@@ -141,7 +141,7 @@ export class ModelEditor {
       return;
     }
     this.isLoading = false;
-    if (!reply.done || reply.text === undefined || reply.revision === undefined) {
+    if (!reply.done || typeof reply.text !== 'string' || reply.revision === undefined) {
       this.fault = reply.reason ?? 'the file cannot be read';
       return;
     }
@@ -162,7 +162,7 @@ export class ModelEditor {
 
   /** Goes on with what the file contains now. */
   takeTheirs(): void {
-    if (this.conflict) {
+    if (typeof this.conflict?.text === 'string') {
       this.#take(this.name, this.conflict.text, this.conflict.revision);
     }
   }

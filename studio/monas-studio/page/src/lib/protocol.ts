@@ -424,7 +424,8 @@ export interface Completion {
 export interface ModelReply {
   done: boolean;
   reason?: string | null;
-  text?: string;
+  /** Null of a file that was deleted. */
+  text?: string | null;
   revision?: string;
   picture?: Picture | null;
   parts?: ModelParts;
