@@ -232,6 +232,15 @@ const TESTS = {
     await shot(page, 'topics');
   },
 
+  async 'the chosen agent and topic stay chosen when one comes back'({ page }) {
+    await page.locator('h2').first().click();
+    await page.keyboard.press('2');
+    await page.locator('tr.chosen', { hasText: 'blue-2' }).waitFor();
+    await page.keyboard.press('3');
+    await page.locator('tr.chosen', { hasText: 'blue-2' }).waitFor();
+    await until(page, 'its messages', () => /distance/.test(document.querySelector('.message')?.textContent ?? ''));
+  },
+
   async 'the log has filters'({ page }) {
     await page.locator('h2').first().click();
     await page.keyboard.press('4');
