@@ -281,6 +281,20 @@ const TESTS = {
     const heights = await page.evaluate(() => ['[aria-label=Field]', '.robots'].map((panel) => document.querySelector(panel)?.clientHeight ?? 0));
     assert.ok(heights.every((height) => height > 100), `field and robots are ${heights} pixels high`);
     await shot(page, 'small');
+    // of the agents, only the table is wider than the window
+    await page.locator('h2').first().click();
+    await page.keyboard.press('2');
+    await page.locator('.plots').waitFor();
+    for (const side of [0, 1000]) {
+      const [panel, plots] = await page.locator('[aria-label=Agents] > .scroll').evaluate((rows, side) => {
+        rows.scrollLeft = side;
+        return ['[aria-label=Agents]', '.plots'].map((selector) => document.querySelector(selector).getBoundingClientRect().toJSON());
+      }, side);
+      assert.ok(plots.left >= panel.left && plots.right <= panel.right, `plots from ${plots.left} to ${plots.right}`);
+    }
+    await page.locator('[aria-label=Agents] > .scroll').evaluate((rows) => rows.scrollTo(0, 0));
+    await shot(page, 'small-agents');
+    await page.keyboard.press('1');
     await page.setViewportSize({ width: 1280, height: 720 });
   },
 
