@@ -474,6 +474,13 @@ async function tape(browser) {
   await seek(13.3);
   await page.getByRole('button', { name: 'Latest decisions' }).click();
   await whyNot(page, seek, time);
+  // of agents a tape has cycles and steps, and says so
+  await page.keyboard.press('2');
+  await page.locator('tr.choice', { hasText: 'blue-2' }).click();
+  assert.match(await textOf(page, '[aria-label=Agents]'), /A tape has cycles and steps/);
+  assert.match(await textOf(page, '.details'), /A tape has no calls of activities/);
+  assert.equal(await page.locator('.details table').count(), 0, 'no table without activities');
+  await shot(page, 'tape-agents');
   assert.deepEqual(faults, []);
   await page.close();
   await studio.stop();
