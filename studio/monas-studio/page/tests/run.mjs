@@ -324,7 +324,13 @@ const TESTS = {
     await page.waitForEvent('console', isRetry);
     assert.ok(await page.evaluate(notice), 'a retry takes the reason back');
     assert.equal(await page.locator('.robots li').count(), 6);
+    const timeline = page.getByRole('group', { name: 'Timeline' });
+    assert.ok((await timeline.locator('button, select, input').count()) > 5);
+    assert.equal(await timeline.locator(':is(button, select, input):enabled').count(), 0, 'nothing that has no effect is enabled');
     await shot(page, 'ended');
+    await page.keyboard.press('3');
+    await page.locator('tr.choice').first().click();
+    await page.getByText('The studio does not answer: there are no messages.').waitFor();
   },
 };
 
