@@ -241,6 +241,20 @@ const TESTS = {
     await until(page, 'its messages', () => /distance/.test(document.querySelector('.message')?.textContent ?? ''));
   },
 
+  async 'looking back, no later message is shown, and the age of figures is said'({ page }) {
+    await page.getByLabel('Moment').fill('7');
+    await page.getByText('Messages of a past moment are not kept').waitFor();
+    await page.getByText('Looking back, these figures may be some seconds older').waitFor();
+    assert.equal(await page.locator('.leaf').count(), 0);
+    await page.locator('h2').first().click();
+    await page.keyboard.press('2');
+    await page.getByText('Looking back, these figures may be some seconds older').waitFor();
+    await page.keyboard.press('l');
+    await until(page, 'the present moment', () => document.querySelector('.link')?.textContent === 'Live');
+    await page.keyboard.press('3');
+    await until(page, 'messages again', () => /distance/.test(document.querySelector('.message')?.textContent ?? ''));
+  },
+
   async 'the log has filters'({ page }) {
     await page.locator('h2').first().click();
     await page.keyboard.press('4');

@@ -203,9 +203,14 @@ export class StudioClient {
     this.#send({ type: 'live' });
   }
 
+  /** Whether a moment of a run is shown that is not its present one. */
+  get isPast(): boolean {
+    return this.tape?.live === false;
+  }
+
   /** Whether this page may change the run: not while it looks back. */
   get mayControl(): boolean {
-    return this.run?.control === true && this.run.link === 'live' && this.connection === 'open' && this.tape?.live !== false;
+    return this.run?.control === true && this.run.link === 'live' && this.connection === 'open' && !this.isPast;
   }
 
   /** Changes an agent of a host, as `monas agent` and `monas chart raise` do. */

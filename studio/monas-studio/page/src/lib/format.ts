@@ -27,3 +27,6 @@ export function rate(hertz: number | null | undefined): string {
 export function count(number: number): string {
   return number.toLocaleString('en').replaceAll(',', '\u202f');
 }
+
+/** What is said of tables while a run is looked back at: they are kept only now and then. */
+export const PAST_TABLES = 'Looking back, these figures may be some seconds older than the moment; a tape has them of each moment.';
