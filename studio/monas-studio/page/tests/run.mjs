@@ -361,6 +361,10 @@ async function beside(browser) {
   assert.equal(await page.locator('.dial').count(), 0, 'a studio beside a run does not set its pace');
   await first.stop();
   await until(page, 'its end', () => document.querySelector('.link')?.textContent === 'Run ended');
+  await page.getByText('What you see is its last moment').waitFor();
+  // what is kept of it can still be looked back at
+  await page.getByLabel('Moment').fill('0');
+  await page.getByText('What you see is a moment before its end').waitFor();
   const second = start(PROGRAM, args, first.folder);
   second.url.catch(() => {});
   await until(page, 'the next run', () => document.querySelector('.link')?.textContent === 'Live');
@@ -713,6 +717,7 @@ async function steering(browser) {
   await page.getByLabel('Moment').fill('3');
   await until(page, 'a moment before', () => document.querySelector('.link')?.textContent === 'Looking back');
   assert.equal(await publishing.count(), 0);
+  assert.equal(await page.getByText('may control').count(), 0);
   assert.deepEqual(faults, []);
   await page.close();
   await run.stop();
