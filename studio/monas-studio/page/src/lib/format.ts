@@ -29,4 +29,4 @@ export function count(number: number): string {
 }
 
 /** What is said of tables while a run is looked back at: they are kept only now and then. */
-export const PAST_TABLES = 'Looking back, these figures may be some seconds older than the moment; a tape has them of each moment.';
+export const PAST_TABLES = 'Looking back, these figures may be some seconds older than the moment.';
