@@ -112,6 +112,10 @@ fn topics_are_inspected_and_published_over_a_link() {
     // The list is of the moment: the first message may come after the peer.
     let mut lists = (0..LOOKS).map(|_| over(&["list", "body/sensors"]).out);
     assert!(lists.any(|list| list.contains("from blue-2")), "no message arrived in {LOOKS} lists");
+    let mut details = (0..LOOKS).map(|_| over(&["info", "body/sensors"]).out);
+    let received = details.find(|info| info.contains("received from other hosts: blue-2"));
+    let received = received.expect("a message arrives in so many looks");
+    assert!(!received.contains("nothing was published"), "{received}");
 
     let published = over(&["pub", "soccer/ball", "{\"found\": true}"]);
     assert_eq!(published.code, Some(0), "{}", published.err);

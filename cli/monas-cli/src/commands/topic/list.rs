@@ -32,14 +32,14 @@ fn entries(pattern: &str, choice: &RunSelector) -> Result<Vec<TopicEntry>, Comma
 fn row(topic: &TopicEntry) -> [String; 7] {
     let last = topic.last.as_ref();
     let none = || "-".to_owned();
-    // Messages received over a link have no local publisher.
-    let by = || if topic.from.is_empty() { none() } else { format!("from {}", topic.from.join(", ")) };
+    let received = (!topic.from.is_empty()).then(|| format!("from {}", topic.from.join(", ")));
+    let by: Vec<String> = last.map(|last| last.publisher.clone()).into_iter().chain(received).collect();
     [
         topic.host.clone(),
         topic.path.clone(),
         keeping(topic),
         topic.r#type.clone(),
-        last.map_or_else(by, |last| last.publisher.clone()),
+        if by.is_empty() { none() } else { by.join(", ") },
         last.map_or_else(none, |last| last.sequence.to_string()),
         last.map_or_else(none, |last| format!("{:.3} s", seconds(last.published))),
     ]
@@ -88,10 +88,12 @@ pub(crate) fn info(
                 seconds(last.published),
                 last.sequence
             )?,
-            None => writeln!(console.out, "  nothing was published on it")?,
+            // Messages received over a link have no local publisher.
+            None if entry.from.is_empty() => writeln!(console.out, "  nothing was published on it")?,
+            None => {}
         }
         if !entry.from.is_empty() {
-            writeln!(console.out, "  from other hosts: {}", entry.from.join(", "))?;
+            writeln!(console.out, "  received from other hosts: {}", entry.from.join(", "))?;
         }
     }
     for field in message.fields() {
