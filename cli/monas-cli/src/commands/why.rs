@@ -12,7 +12,7 @@ use monas_tape::Recording;
 use monas_terminal::{CommandFailure, CommandOutput, Exit, Format, FormatArgument, failed};
 use serde_json::{Value, json};
 
-use crate::input::recorded_charts;
+use crate::input::{recorded_charts, run_of};
 
 #[derive(Args, Debug)]
 pub(crate) struct WhyArguments {
@@ -53,6 +53,8 @@ pub(crate) fn execute(
     let WhyArguments { tape, host, state, transition, at, agent, format } = arguments;
     let format = format.value;
     let recording = Recording::open(tape).map_err(failed(format))?;
+    let overview = recording.overview().map_err(failed(format))?;
+    let is_whole = run_of(tape, &overview).is_ok();
     let charts = recorded_charts(&recording, format)?;
     let tape = TapeRun::new("", recording, &charts, None);
     let tape = tape.map_err(|error| CommandFailure::failed(format, error))?;
@@ -62,12 +64,12 @@ pub(crate) fn execute(
         Some(transition) => {
             let question = TransitionQuestion { host, agent, transition, seconds };
             let why = tape.explain_transition(&question).map_err(refused)?;
-            (json!(why), transition_lines(&why, *at))
+            (json!(why), transition_lines(&why, *at, is_whole))
         }
         None => {
             let state = state.as_deref().unwrap_or_default();
             let why = tape.explain(&WhyQuestion { host, agent, state, seconds }).map_err(refused)?;
-            (json!(why), lines(&why, *at))
+            (json!(why), lines(&why, *at, is_whole))
         }
     };
     match format {
@@ -81,8 +83,8 @@ pub(crate) fn execute(
     Ok(Exit::Success)
 }
 
-/// An explanation as text.
-fn lines(why: &Explanation, at: f64) -> Vec<String> {
+/// An explanation as text. A tape that is not whole does not tell what never happened.
+fn lines(why: &Explanation, at: f64, is_whole: bool) -> Vec<String> {
     let Explanation { host, agent, state, is_active, entered, begins, left, segments } = why;
     let cut =
         begins.map(|begins| format!("its steps are on the tape from {begins:.3} s on")).unwrap_or_default();
@@ -107,31 +109,38 @@ fn lines(why: &Explanation, at: f64) -> Vec<String> {
     for segment in segments {
         let text = if segment.text.is_empty() { String::new() } else { format!(" : {}", segment.text) };
         lines.push(format!("  {} -> {}{text}", segment.source, segment.target));
-        lines.extend(segment.reads.iter().map(|read| format!("    {}", read_line(read))));
+        lines.extend(segment.reads.iter().map(|read| format!("    {}", read_line(read, is_whole))));
     }
     lines
 }
 
 /// The explanation of a transition as text.
-fn transition_lines(why: &TransitionExplanation, at: f64) -> Vec<String> {
+fn transition_lines(why: &TransitionExplanation, at: f64, is_whole: bool) -> Vec<String> {
     let TransitionExplanation { host, agent, number, source, target, text, reason, .. } = why;
     let text = if text.is_empty() { String::new() } else { format!(" : {text}") };
     let mut lines = vec![format!("{host} {agent}, transition {number}: {source} -> {target}{text}")];
-    let when = |time: Option<f64>| time.map_or("never".to_owned(), |time| format!("at {time:.3} s"));
+    let when = |time: Option<f64>, otherwise: &str| {
+        time.map_or_else(|| otherwise.to_owned(), |time| format!("at {time:.3} s"))
+    };
+    let before = if is_whole { "never" } else { "before the tape, if at all" };
     lines.push(match (why.verdict, why.judged) {
         (Verdict::Waits | Verdict::NotReached, _) | (_, None) => {
             format!("did not fire at {at:.3} s: {reason}")
         }
         (_, Some(judged)) => format!("at {judged:.3} s: {reason}"),
     });
-    lines.push(format!("fired last {}, fires next {}", when(why.fired), when(why.next)));
+    lines.push(format!(
+        "fired last {}, fires next {}",
+        when(why.fired, before),
+        when(why.next, "after the tape, if at all")
+    ));
     for trigger in &why.triggers {
-        lines.push(format!("  trigger `{}`: arrived last {}", trigger.text, when(trigger.arrived)));
+        lines.push(format!("  trigger `{}`: arrived last {}", trigger.text, when(trigger.arrived, before)));
     }
     for GuardAtom { text, value, reads } in &why.atoms {
         let value = value.map_or("unknown", |value| if value { "true" } else { "false" });
         lines.push(format!("  {value:7} {text}"));
-        lines.extend(reads.iter().map(|read| format!("            {}", read_line(read))));
+        lines.extend(reads.iter().map(|read| format!("            {}", read_line(read, is_whole))));
     }
     for MessageChain { links } in &why.chains {
         lines.push("  the messages behind it, each followed by those that were read for it".to_owned());
@@ -148,16 +157,18 @@ fn link_line(link: &ChainLink) -> String {
     format!("{indent}{published:.3} s {topic} number {sequence} by {of}{publisher} on {host}{end}")
 }
 
-fn read_line(read: &ReadValue) -> String {
+fn read_line(read: &ReadValue, is_whole: bool) -> String {
     let ReadValue { name, value, topic, publisher, sequence, published, .. } = read;
     let origin = match (topic, publisher, sequence, published) {
         (Some(topic), Some(publisher), Some(sequence), Some(published)) => {
             format!("number {sequence} on {topic} by {publisher}, at {published:.3} s")
         }
-        (Some(topic), ..) => format!("nothing had been delivered on {topic}"),
+        (Some(topic), ..) if is_whole => format!("nothing had been delivered on {topic}"),
+        (Some(topic), ..) => format!("what was delivered on {topic} is not on the tape"),
         (None, ..) if read.is_timer => match read.due {
             Some(due) => format!("timer, expires at {due:.3} s"),
-            None => "timer, never started".to_owned(),
+            None if is_whole => "timer, never started".to_owned(),
+            None => "timer, started before the tape, if at all".to_owned(),
         },
         (None, ..) => "constant".to_owned(),
     };

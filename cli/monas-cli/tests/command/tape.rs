@@ -235,6 +235,27 @@ fn a_part_of_a_tape_explains_what_was_active_before_it() {
     assert!(why(&text(&part)).contains(expected), "{}", why(&text(&part)));
 }
 
+#[test]
+fn a_part_of_a_tape_does_not_claim_what_never_happened_before_it() {
+    let (_folder, part) = fresh("part.mcap");
+    done(&["tape", "cut", &tape(), "--from", "10s", "-o", &text(&part)]);
+    let why = |tape: &str, transition: &str| {
+        done(&["why", tape, "blue-2", "--transition", transition, "--at", "10.05"]).out
+    };
+    let vision = why(&text(&part), "Vision -> Vision");
+    for expected in [
+        "vision_timeout: timer, started before the tape, if at all",
+        "GameState.player_state: what was delivered on soccer/game_state is not on the tape",
+    ] {
+        assert!(vision.contains(expected), "{vision}");
+    }
+    let left = why(&text(&part), "initialize -> active");
+    let expected = "fired last before the tape, if at all, fires next after the tape, if at all\n";
+    assert!(left.contains(expected), "{left}");
+    let whole = why(&tape(), "1");
+    assert!(whole.contains("fired last never, fires next after the tape, if at all\n"), "{whole}");
+}
+
 /// A short run in real time.
 fn live(folder: &Path) -> String {
     let live = text(&folder.join("live.mcap"));
