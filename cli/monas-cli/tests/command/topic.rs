@@ -244,7 +244,8 @@ fn a_second_run_of_a_name_is_refused_one_that_was_killed_is_not_in_the_way() {
     let first = play(folder.path());
     let second = ask(folder.path(), &arguments);
     assert_eq!(second.code, Some(1));
-    assert!(second.err.contains("another run has this name"), "{}", second.err);
+    let hint = "another run has this name; choose another one with --control, or stop that run";
+    assert!(second.err.contains(hint), "{}", second.err);
     first.kill();
     assert!(folder.path().join("monas/game.sock").exists());
     assert_eq!(play(folder.path()).interrupt().code, Some(130));

@@ -92,7 +92,13 @@ mod socket {
         match (&arguments.control, default_folder()) {
             (Some(name), Ok(folder)) => {
                 let socket = ControlSocket::bind(&folder, name);
-                let socket = socket.map_err(|error| CommandFailure::failed(format, error))?;
+                let socket = socket.map_err(|error| match error.kind() {
+                    ErrorKind::NameTaken => {
+                        let message = format!("{error}; choose another one with --control, or stop that run");
+                        CommandFailure::Failed(format, message)
+                    }
+                    _ => CommandFailure::failed(format, error),
+                })?;
                 writeln!(console.remarks(), "control socket: {}", socket.path().display())?;
                 Ok(Some(socket))
             }
