@@ -48,7 +48,8 @@ pub struct Source {
     pub name: String,
     /// The whole text.
     pub text: String,
-    /// The first byte of each line, determined once: a text may have a finding in every line.
+    /// The first byte of each line, determined once: a text may have a finding in every line. The
+    /// first line begins after a byte order mark, which editors do not show.
     line_starts: OnceLock<Box<[usize]>>,
     /// The number of characters before each block of [`BLOCK`] bytes: one line may have many
     /// findings.
@@ -76,7 +77,7 @@ impl Source {
         while !self.text.is_char_boundary(end) {
             end -= 1;
         }
-        (number, self.characters_before(end) - self.characters_before(start) + 1)
+        (number, self.characters_before(end).saturating_sub(self.characters_before(start)) + 1)
     }
 
     /// The line that contains a byte, without its line break, and its first byte.
@@ -107,14 +108,15 @@ impl Source {
     /// The number, from 1, and the first byte of the line that contains a byte.
     fn line_at(&self, byte: usize) -> (usize, usize) {
         let starts = self.line_starts();
-        let number = starts.partition_point(|&start| start <= byte);
+        let number = starts.partition_point(|&start| start <= byte).max(1);
         (number, starts[number - 1])
     }
 
     fn line_starts(&self) -> &[usize] {
         self.line_starts.get_or_init(|| {
             let after = self.text.match_indices('\n').map(|(newline, _)| newline + 1);
-            std::iter::once(0).chain(after).collect()
+            let mark = if self.text.starts_with('\u{feff}') { '\u{feff}'.len_utf8() } else { 0 };
+            std::iter::once(mark).chain(after).collect()
         })
     }
 }
@@ -343,6 +345,13 @@ mod tests {
             diagnostic.to_string(),
             "a.xml:2:2: error[E0001]: unknown element `actvity` (did you mean `activity`?)"
         );
+    }
+
+    #[test]
+    fn a_byte_order_mark_is_no_column() {
+        let source = Source::new("a.srm", "\u{feff}a = b\nc");
+        assert_eq!([0, 3, 4, 9].map(|byte| source.position(byte)), [(1, 1), (1, 1), (1, 2), (2, 1)]);
+        assert_eq!(source.line(0), (3, "a = b"));
     }
 
     #[test]

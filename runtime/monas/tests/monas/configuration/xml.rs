@@ -145,6 +145,8 @@ fn a_value_in_quotes_may_hold_signs_of_tags() {
 #[test]
 fn a_mark_in_front_of_the_text_means_nothing() {
     assert_eq!(read("\u{feff}<a/>")[0].name(), "a");
+    let (_, diagnostics) = parse("\u{feff}<a x/>");
+    assert!(diagnostics[0].to_string().starts_with("a.xml:1:4: "), "{}", diagnostics[0]);
 }
 
 #[test]
