@@ -1,5 +1,9 @@
 //! Files that several commands read: configurations, models and recordings.
 
+use std::path::{Path, PathBuf};
+
+use clap::builder::{PathBufValueParser, TypedValueParser};
+
 mod configuration;
 pub(crate) mod layers;
 mod model;
@@ -13,3 +17,11 @@ pub(crate) use model::{valid_chart, valid_model};
 #[cfg(feature = "soccer")]
 pub(crate) use recorded_run::recorded_configuration;
 pub(crate) use recorded_run::{chosen_hosts, recorded_charts, recorded_hosts, replay, run_of};
+
+/// Parses the path of a file that is written beside standard output.
+pub(crate) fn file_parser() -> impl TypedValueParser<Value = PathBuf> {
+    PathBufValueParser::new().try_map(|path| match path == Path::new("-") {
+        true => Err("standard output has the results: name a file"),
+        false => Ok(path),
+    })
+}

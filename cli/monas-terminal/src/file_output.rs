@@ -4,14 +4,19 @@ use std::path::Path;
 
 use crate::{CommandFailure, CommandOutput, Exit, Format};
 
-/// Writes a text to a file, or to standard output if no file is given.
+/// The file that was given, or none for standard output: `-`, as for other commands.
+pub fn output_file(output: Option<&Path>) -> Option<&Path> {
+    output.filter(|path| *path != Path::new("-"))
+}
+
+/// Writes a text to a file, or to standard output if no file or `-` is given.
 pub fn write_text(
     output: Option<&Path>,
     text: &str,
     format: Format,
     console: &mut CommandOutput<'_>,
 ) -> Result<Exit, CommandFailure> {
-    match output {
+    match output_file(output) {
         Some(path) => monas_files::write(path, text).map_err(|error| {
             CommandFailure::Failed(format, format!("cannot write {}: {error}", path.display()))
         })?,

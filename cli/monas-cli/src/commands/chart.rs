@@ -9,6 +9,7 @@ use clap_complete::engine::ArgValueCandidates;
 use monas::records::{Action, Change};
 use monas_terminal::{CommandFailure, CommandOutput, Exit};
 
+use crate::input::file_parser;
 use crate::remote::{RunSelector, agents, print_outcome, request_change};
 
 #[derive(Subcommand, Debug)]
@@ -25,7 +26,7 @@ pub(crate) enum ChartCommand {
         #[arg(long)]
         chart: Option<String>,
         /// Also draw it as SVG, with active states highlighted.
-        #[arg(short, long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+        #[arg(short, long, value_name = "FILE", value_hint = ValueHint::FilePath, value_parser = file_parser())]
         output: Option<PathBuf>,
         #[command(flatten)]
         run: RunSelector,

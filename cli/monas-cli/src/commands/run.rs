@@ -32,7 +32,7 @@ use monas_project::differences;
 use monas_terminal::{CommandFailure, CommandOutput, Exit, FormatArgument, parse_size, report};
 use yase::Diagnostic;
 
-use crate::input::{ConfigurationKind, DEFAULT_CONFIGURATION, LayerArguments, kind_of, layers};
+use crate::input::{ConfigurationKind, DEFAULT_CONFIGURATION, LayerArguments, file_parser, kind_of, layers};
 
 /// Arguments of `monas run`.
 #[derive(Args, Debug)]
@@ -50,7 +50,7 @@ pub(crate) struct RunArguments {
     pub(crate) length: Option<Duration>,
     /// Record every message into this MCAP file, or into a new one in this folder, named after the
     /// run. If the file exists, the next free name is taken: `match-2.mcap`.
-    #[arg(long, value_name = "FILE", value_hint = ValueHint::AnyPath)]
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::AnyPath, value_parser = file_parser())]
     pub(crate) record: Option<PathBuf>,
     /// The most recordings in a folder; the oldest are removed.
     #[arg(long, value_name = "COUNT", default_value_t = 20)]

@@ -50,6 +50,8 @@ fn a_chart_is_inspected_and_a_raised_event_is_recorded() {
     assert_eq!(object["snapshot"]["timers"][0]["timer"]["name"], "enough");
     let drawn = fs::read_to_string(&drawing).expect("it was drawn");
     assert!(drawn.starts_with("<svg") && drawn.contains("active"), "{drawn}");
+    let answer = chart(&["show", "Light", "-o", "-"]);
+    assert!(answer.code == Some(2) && answer.err.contains("name a file"), "{answer:?}");
     let answer = chart(&["show", "Dark"]);
     assert_eq!(answer.code, Some(1));
     assert!(answer.err.contains("no agent is named `Dark`"), "{}", answer.err);

@@ -42,6 +42,20 @@ fn an_output_that_is_the_tape_and_moments_outside_of_it_are_refused() {
     assert_eq!(exported.code, Some(2), "{exported:?}");
     assert!(exported.err.contains("is the tape itself: name another file"), "{exported:?}");
     assert!(fs::read(&tape).expect("the tape") == before);
+    for command in [
+        &["run", MATCH, "--for", "1s", "--record", "-"][..],
+        &["tape", "cut", &tape, "-o", "-"],
+        &["tape", "merge", &tape, &tape, "-o", "-"],
+        &["tape", "recover", &tape, "-o", "-"],
+    ] {
+        let to_output = monas(command);
+        assert_eq!((to_output.code, to_output.out.as_str()), (Some(2), ""), "{to_output:?}");
+        assert!(to_output.err.contains("standard output has the results: name a file"), "{to_output:?}");
+    }
+    let rows = |more: &[&str]| {
+        done(&[&["tape", "export", &tape, "--topic", "sim/score", "--format", "csv"], more].concat()).out
+    };
+    assert_eq!(rows(&["-o", "-"]), rows(&[]));
     let what_if = |times: &[&str]| {
         let change = ["--set", "agent.Goalie.frequency=50"];
         monas(&[&["tape", "what-if", &tape], times, &change].concat())

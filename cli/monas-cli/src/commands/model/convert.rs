@@ -44,8 +44,7 @@ pub(crate) fn execute(
     // Losses in reading were reported with the other findings.
     let lost = findings.iter().filter(|finding| finding.code == "E0850").count();
     let text = text_of(&model, wanted, &source, lost, arguments.lossy, format, console)?;
-    let output = Some(arguments.output.as_path()).filter(|path| *path != Path::new("-"));
-    write_text(output, &text, format, console)
+    write_text(Some(&arguments.output), &text, format, console)
 }
 
 fn by_ending(output: &Path, model: &Model, read_as: ModelFormat) -> Result<ModelFormat, CommandFailure> {

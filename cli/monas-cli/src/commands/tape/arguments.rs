@@ -7,6 +7,8 @@ use clap::{Args, Subcommand, ValueEnum, ValueHint};
 use monas::duration;
 use monas_terminal::FormatArgument;
 
+use crate::input::file_parser;
+
 #[derive(Subcommand, Debug)]
 pub(crate) enum TapeCommand {
     /// Show the content of a tape: its origin, files and channels.
@@ -46,7 +48,7 @@ pub(crate) enum TapeCommand {
         #[arg(value_hint = ValueHint::FilePath)]
         file: PathBuf,
         /// The recovered tape; replaces the old one if not given.
-        #[arg(short, long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+        #[arg(short, long, value_name = "FILE", value_hint = ValueHint::FilePath, value_parser = file_parser())]
         output: Option<PathBuf>,
         #[command(flatten)]
         format: FormatArgument,
@@ -75,7 +77,7 @@ pub(crate) enum TapeCommand {
         #[arg(required = true, num_args = 2.., value_name = "FILE", value_hint = ValueHint::FilePath)]
         files: Vec<PathBuf>,
         /// The output tape.
-        #[arg(short, long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+        #[arg(short, long, value_name = "FILE", value_hint = ValueHint::FilePath, value_parser = file_parser())]
         output: PathBuf,
         #[command(flatten)]
         format: FormatArgument,
@@ -129,7 +131,7 @@ pub(crate) struct CutArguments {
     #[arg(value_hint = ValueHint::FilePath)]
     pub(crate) file: PathBuf,
     /// The output tape.
-    #[arg(short, long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    #[arg(short, long, value_name = "FILE", value_hint = ValueHint::FilePath, value_parser = file_parser())]
     pub(crate) output: PathBuf,
     #[command(flatten)]
     pub(crate) selection: MessageSelection,

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use monas_files::AtomicFile;
 use monas_tape::{Decoder, RecordedSample, Recording, Value};
-use monas_terminal::{CommandFailure, CommandOutput, Exit, Format, failed};
+use monas_terminal::{CommandFailure, CommandOutput, Exit, Format, failed, output_file};
 use serde_json::json;
 
 use super::arguments::{ExportArguments, ExportFormat};
@@ -21,7 +21,7 @@ pub(crate) fn execute(
 ) -> Result<Exit, CommandFailure> {
     let recording = Recording::open(&arguments.file).map_err(failed(Format::Text))?;
     arguments.selection.check(&recording.overview().map_err(failed(Format::Text))?)?;
-    match &arguments.output {
+    match output_file(arguments.output.as_deref()) {
         None => write(arguments, &recording, &mut BufWriter::new(&mut *console.out))?,
         Some(path) => {
             let same = |path: &Path| path.canonicalize().ok();

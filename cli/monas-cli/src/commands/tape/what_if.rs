@@ -17,7 +17,8 @@ use yase::expression::{Expression, parse_transition};
 
 use crate::commands::studio::scene;
 use crate::input::{
-    ConfigurationKind, LayerArguments, kind_of, layers, recorded_charts, recorded_configuration, run_of,
+    ConfigurationKind, LayerArguments, file_parser, kind_of, layers, recorded_charts, recorded_configuration,
+    run_of,
 };
 
 /// Arguments of `monas tape what-if`.
@@ -43,7 +44,7 @@ pub(crate) struct WhatIfArguments {
     #[arg(long = "for", value_name = "TIME", value_parser = duration::parse)]
     length: Option<Duration>,
     /// Keep the other future as a tape.
-    #[arg(short, long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    #[arg(short, long, value_name = "FILE", value_hint = ValueHint::FilePath, value_parser = file_parser())]
     output: Option<PathBuf>,
     #[command(flatten)]
     format: FormatArgument,
