@@ -101,13 +101,16 @@ fn unreadable(code: &'static str, name: &str, message: String) -> Box<Diagnostic
 /// that the files of a project name each other from the project's root independent of the working
 /// directory.
 ///
+/// A folder of this name is found if there is no file: reading it says that it is a folder.
+///
 /// # Errors
 /// The path of a file with a similar name, if there is one.
 pub fn locate(path: &Path, named: &str) -> Result<PathBuf, Option<String>> {
     let working_folder = std::env::current_dir().unwrap_or_default();
     let candidates: Vec<PathBuf> =
         folders_of(path, &working_folder).into_iter().map(|folder| folder.join(named)).collect();
-    match candidates.iter().find(|candidate| candidate.is_file()) {
+    let folder = || candidates.iter().find(|candidate| !named.is_empty() && candidate.is_dir());
+    match candidates.iter().find(|candidate| candidate.is_file()).or_else(folder) {
         Some(found) => Ok(found.clone()),
         None => {
             let near = candidates.iter().find_map(|candidate| neighbour(candidate));

@@ -355,6 +355,9 @@ fn missing_files_are_reported_with_the_nearest_one() {
     let expected =
         "agents.xml:1:34: error[E0316]: no model file `models/golie.srm` (did you mean `models/goalie.srm`?)";
     assert_eq!(read(text, &[("goalie.srm", "goalie = Vision")]).1, [expected]);
+    let text = "<agent><name>Goalie</name><statechart>models</statechart></agent>";
+    let expected = "models:1:1: error[E0317]: `models` is a folder, not a file (name a file in it, for example `models/goalie.srm`)";
+    assert_eq!(read(text, &[("goalie.srm", "goalie = Vision")]).1, [expected]);
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("agents.xml"), "").unwrap();
     let (setup, diagnostics) = config::load(folder.path().join("agent.xml"), &registry());
