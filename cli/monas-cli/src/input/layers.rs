@@ -46,14 +46,17 @@ fn robot(config: &Path, name: &str) -> Result<Vec<config::Element>, Vec<Diagnost
 }
 
 pub(crate) fn robot_file(config: &Path, name: &str) -> Result<PathBuf, Box<Diagnostic>> {
-    let mut near = None;
-    for ending in ["xml", "toml"] {
-        match config::locate(config, &format!("robots/{name}.{ending}")) {
-            Ok(path) => return Ok(path),
-            Err(found) => near = near.or(found),
-        }
-    }
     let source = Source::new("--robot", name);
+    let near = match ["xml", "toml"].map(|ending| config::locate(config, &format!("robots/{name}.{ending}")))
+    {
+        [Ok(xml), Ok(toml)] => {
+            let message = format!("`{}` and `{}` both override this robot", xml.display(), toml.display());
+            let diagnostic = Diagnostic::error("E0375", 0..name.len(), message).in_source(&source);
+            return Err(Box::new(diagnostic.with_hint("keep one of them")));
+        }
+        [Ok(path), Err(_)] | [Err(_), Ok(path)] => return Ok(path),
+        [Err(xml), Err(toml)] => xml.or(toml),
+    };
     let message = format!("no file `robots/{name}.xml` or `robots/{name}.toml` beside the configuration");
     let diagnostic = Diagnostic::error("E0316", 0..name.len(), message).in_source(&source);
     Err(Box::new(match near {

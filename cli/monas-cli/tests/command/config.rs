@@ -376,6 +376,20 @@ fn physics_that_contradict_themselves_are_found_in_their_file() {
 }
 
 #[test]
+fn two_files_of_overrides_for_one_robot_are_refused() {
+    let files = [("agents.xml", AGENTS), ("robots/one.xml", ""), ("robots/one.toml", "")];
+    let folder = folder(&files);
+    let config = at(folder.path(), "agents.xml");
+    for command in [&["config", "check"][..], &["run"]] {
+        let answer = monas(&[command, &[&config, "--robot", "one"]].concat());
+        assert_eq!(answer.code, Some(3), "{answer:?}");
+        for file in ["robots/one.xml", "robots/one.toml"] {
+            assert!(answer.err.contains(&format!("`{}`", at(folder.path(), file))), "{answer:?}");
+        }
+    }
+}
+
+#[test]
 fn a_tape_is_replayed_with_the_overrides_of_its_robot() {
     let agent = |name: &str| {
         format!("<agent frequency=\"20\"><name>{name}</name><activity>LedHandler</activity></agent>\n")
