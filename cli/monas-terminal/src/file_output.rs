@@ -9,6 +9,18 @@ pub fn output_file(output: Option<&Path>) -> Option<&Path> {
     output.filter(|path| *path != Path::new("-"))
 }
 
+/// Refuses to write over a file that is read.
+pub fn check_distinct(input: &Path, output: &Path, what: &str) -> Result<(), CommandFailure> {
+    let same = |path: &Path| path.canonicalize().ok();
+    match same(output).is_some_and(|output| same(input) == Some(output)) {
+        true => {
+            let output = output.display();
+            Err(CommandFailure::Usage(format!("{output} is the {what} itself: name another file")))
+        }
+        false => Ok(()),
+    }
+}
+
 /// Writes a text to a file, or to standard output if no file or `-` is given.
 pub fn write_text(
     output: Option<&Path>,

@@ -45,7 +45,7 @@ mod wall_clock;
 pub use command_failure::{CommandFailure, failed};
 pub use command_output::CommandOutput;
 pub use exit::Exit;
-pub use file_output::{output_file, write_drawing, write_text};
+pub use file_output::{check_distinct, output_file, write_drawing, write_text};
 pub use format::{Format, FormatArgument};
 pub use global_arguments::{GlobalArguments, wanted_colours};
 pub use interrupt::Interrupt;

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use aseme_models::convert::{Format as ModelFormat, Model};
 use clap::{Args, ValueHint};
-use monas_terminal::{CommandFailure, CommandOutput, Exit, FormatArgument, write_text};
+use monas_terminal::{CommandFailure, CommandOutput, Exit, FormatArgument, check_distinct, write_text};
 
 use super::model_format::{named, text_of};
 use crate::input::valid_model;
@@ -36,6 +36,7 @@ pub(crate) fn execute(
     console: &mut CommandOutput<'_>,
 ) -> Result<Exit, CommandFailure> {
     let format = arguments.format.value;
+    check_distinct(&arguments.input, &arguments.output, "model")?;
     let (source, model, read_as, findings) = valid_model(&arguments.input, format, console)?;
     let wanted = match &arguments.written {
         Some(word) => named(word)?,

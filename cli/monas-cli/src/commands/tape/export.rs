@@ -2,11 +2,10 @@
 
 use std::collections::BTreeMap;
 use std::io::{BufWriter, Write};
-use std::path::Path;
 
 use monas_files::AtomicFile;
 use monas_tape::{Decoder, RecordedSample, Recording, Value};
-use monas_terminal::{CommandFailure, CommandOutput, Exit, Format, failed, output_file};
+use monas_terminal::{CommandFailure, CommandOutput, Exit, Format, check_distinct, failed, output_file};
 use serde_json::json;
 
 use super::arguments::{ExportArguments, ExportFormat};
@@ -24,11 +23,7 @@ pub(crate) fn execute(
     match output_file(arguments.output.as_deref()) {
         None => write(arguments, &recording, &mut BufWriter::new(&mut *console.out))?,
         Some(path) => {
-            let same = |path: &Path| path.canonicalize().ok();
-            if same(path).is_some_and(|output| same(&arguments.file) == Some(output)) {
-                let path = path.display();
-                return Err(CommandFailure::Usage(format!("{path} is the tape itself: name another file")));
-            }
+            check_distinct(&arguments.file, path, "tape")?;
             let cannot = |error| {
                 CommandFailure::Failed(Format::Text, format!("cannot write {}: {error}", path.display()))
             };
