@@ -285,13 +285,8 @@ fn choose(mut hosts: Vec<HostConfig>, wanted: &[String]) -> Result<Vec<HostConfi
     let all = names(&hosts);
     for pattern in wanted {
         if !all.iter().any(|(host, agent)| fits(pattern, host, agent)) {
-            let names: Vec<String> = all.iter().map(|(_, agent)| agent.to_lowercase()).collect();
-            return Err(CommandFailure::unknown_name(
-                "configuration",
-                "agent",
-                pattern,
-                names.iter().map(String::as_str),
-            ));
+            let names = all.iter().map(|(_, agent)| agent.as_str());
+            return Err(CommandFailure::unknown_name("configuration", "agent", pattern, names));
         }
     }
     for host in &mut hosts {

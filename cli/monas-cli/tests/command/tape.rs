@@ -236,6 +236,11 @@ fn an_impossible_replay_has_a_reason() {
         let expected = format!("the tape has no robot `local` of {}; it has blue-1, ", text(&config));
         assert!(answer.err.contains(&expected), "{}", answer.err);
     }
+    for (agent, hint) in [("Nope", "it has Attacker, Goalie"), ("golie", "did you mean `Goalie`?")] {
+        let answer = monas(&["tape", "replay", &tape(), "--agents", agent]);
+        assert_eq!(answer.code, Some(2), "{answer:?}");
+        assert!(answer.err.contains(&format!("no agent `{agent}`; {hint}")), "{}", answer.err);
+    }
 }
 
 #[test]
