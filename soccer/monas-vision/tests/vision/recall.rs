@@ -41,6 +41,12 @@ fn measure(objects: FieldObjects, images: u32, width: usize) -> Measures {
     all
 }
 
+#[test]
+fn what_was_not_measured_has_no_sign() {
+    let measures = Measures::default().to_string();
+    assert!(!measures.contains('-'), "{measures}");
+}
+
 fn check_all(all: &Measures, posts: f64) {
     let images = all.images;
     let ball = Bounds { shown: 60, recall: 0.97, wrong: 0.01, distance: (0.02, 0.04) };

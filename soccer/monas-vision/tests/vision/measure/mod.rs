@@ -118,7 +118,8 @@ impl Tally {
 
 /// The mean of numbers.
 pub(crate) fn mean(errors: &[f64]) -> f64 {
-    errors.iter().sum::<f64>() / errors.len().max(1) as f64
+    // The `sum` of no numbers is -0.
+    errors.iter().fold(0.0, |sum, error| sum + error) / errors.len().max(1) as f64
 }
 
 /// The number that nine of ten do not exceed.
