@@ -33,13 +33,16 @@ fn a_chart_goes_through_every_format_and_back() {
 }
 
 #[test]
-fn a_model_is_not_converted_onto_itself() {
+fn a_model_is_not_converted_or_transformed_onto_itself() {
     let folder = tempfile::tempdir().expect("a folder");
     let input = file(folder.path(), "a.iac", CHART);
-    let refused = monas(&["model", "convert", &input, &format!("{}/./a.iac", folder.path().display())]);
-    assert_eq!(refused.code, Some(2), "{refused:?}");
-    assert!(refused.err.contains("is the model itself: name another file"), "{}", refused.err);
-    assert_eq!(fs::read_to_string(&input).expect("it is there"), CHART);
+    let same = format!("{}/./a.iac", folder.path().display());
+    for words in [&["convert", &input, &same][..], &["transform", &input, "-o", &same]] {
+        let refused = monas(&[&["model"], words].concat());
+        assert_eq!(refused.code, Some(2), "{refused:?}");
+        assert!(refused.err.contains("is the model itself: name another file"), "{}", refused.err);
+        assert_eq!(fs::read_to_string(&input).expect("it is there"), CHART);
+    }
     let text = monas(&["model", "transform", &input, "-o", "-"]);
     assert_eq!((text.code, &text.out), (Some(0), &monas(&["model", "transform", &input]).out));
 }

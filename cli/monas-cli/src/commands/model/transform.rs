@@ -8,7 +8,9 @@ use aseme_models::iac::{ChartKind, Iac};
 use aseme_models::{Aip, SystemRoles, transformations};
 use clap::{Args, ValueEnum, ValueHint};
 use monas::Registry;
-use monas_terminal::{CommandFailure, CommandOutput, Exit, Format, FormatArgument, report, write_text};
+use monas_terminal::{
+    CommandFailure, CommandOutput, Exit, Format, FormatArgument, check_distinct, report, write_text,
+};
 use yase::{Diagnostic, Source};
 
 use super::model_format::{named, text_of};
@@ -70,6 +72,9 @@ pub(crate) fn execute(
     arguments: &TransformArguments,
     console: &mut CommandOutput<'_>,
 ) -> Result<Exit, CommandFailure> {
+    if let Some(output) = &arguments.output {
+        check_distinct(&arguments.file, output, "model")?;
+    }
     let kind = arguments.to.or(arguments.model_format()?.map(|_| Kind::Iac));
     match kind {
         None => chart(arguments, console),
