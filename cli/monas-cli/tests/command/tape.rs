@@ -38,9 +38,15 @@ fn text(path: &Path) -> String {
 fn an_output_that_is_the_tape_and_moments_outside_of_it_are_refused() {
     let tape = tape();
     let before = fs::read(&tape).expect("the tape");
-    let exported = monas(&["tape", "export", &tape, "-o", &tape]);
-    assert_eq!(exported.code, Some(2), "{exported:?}");
-    assert!(exported.err.contains("is the tape itself: name another file"), "{exported:?}");
+    for command in [
+        &["export", &tape, "-o", &tape][..],
+        &["cut", &tape, "--to", "1s", "-o", &tape],
+        &["merge", &tape, &tape, "-o", &tape],
+    ] {
+        let refused = monas(&[&["tape"], command].concat());
+        assert_eq!(refused.code, Some(2), "{refused:?}");
+        assert!(refused.err.contains("is the tape itself: name another file"), "{refused:?}");
+    }
     assert!(fs::read(&tape).expect("the tape") == before);
     for command in [
         &["run", MATCH, "--for", "1s", "--record", "-"][..],

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use monas_tape::{Channel, MetadataEntry, Recording, TapeFilter};
-use monas_terminal::{CommandFailure, CommandOutput, Exit, Format, counted, failed};
+use monas_terminal::{CommandFailure, CommandOutput, Exit, Format, check_distinct, counted, failed};
 use serde_json::json;
 
 use super::arguments::CutArguments;
@@ -38,6 +38,7 @@ pub(crate) fn recover(
 pub(crate) fn cut(arguments: &CutArguments, console: &mut CommandOutput<'_>) -> Result<Exit, CommandFailure> {
     let CutArguments { file, output, selection, format } = arguments;
     let format = format.value;
+    check_distinct(file, output, "tape")?;
     let recording = Recording::open(file).map_err(failed(format))?;
     selection.check(&recording.overview().map_err(failed(format))?)?;
     let (from, to) = selection.span();
@@ -57,6 +58,7 @@ pub(crate) fn merge(
     format: Format,
     console: &mut CommandOutput<'_>,
 ) -> Result<Exit, CommandFailure> {
+    files.iter().try_for_each(|file| check_distinct(file, output, "tape"))?;
     let recordings: Result<Vec<Recording>, _> = files.iter().map(Recording::open).collect();
     let messages = monas_tape::merge(&recordings.map_err(failed(format))?, output).map_err(failed(format))?;
     written(output, messages, format, console)
