@@ -152,6 +152,9 @@ fn another_guard_from_a_moment_on_gives_another_future_and_the_same_guard_the_sa
         (Some(12.6), &"KICK_RIGHT".into())
     );
     assert_ne!(without["recorded"]["events"], without["what_if"]["events"]);
+    // the file stays, and is not taken for the other future
+    assert_eq!(object(&["--guard", "CONDITION -> search=[!Ball.found]", "-o", other]), same);
+    assert!(folder.path().join("other-2.mcap").exists());
     // a parameter of an activity takes effect, on the robots that are named
     let slow = object(&["--set", "agent.Attacker.MotionController.walk_forward=0.05", "--host", "blue-3"]);
     assert_eq!(

@@ -10,8 +10,8 @@ use monas::duration;
 use monas::records::{Action, Change, Setting};
 use monas_match::{MatchOptions, MatchPlan, MatchSource};
 use monas_studio::{TapeChart, TapeRun};
-use monas_tape::{Recording, Tape};
-use monas_terminal::{CommandFailure, CommandOutput, Exit, Format, FormatArgument, failed, table};
+use monas_tape::{ExistingFile, Recording, Tape, TapeFile};
+use monas_terminal::{CommandFailure, CommandOutput, Exit, Format, FormatArgument, failed, report, table};
 use serde_json::{Value, json};
 use yase::expression::{Expression, parse_transition};
 
@@ -76,7 +76,13 @@ pub(crate) fn execute(
 
     let folder = tempfile::tempdir().map_err(failed(format))?;
     let path = arguments.output.clone().unwrap_or_else(|| folder.path().join("what-if.mcap"));
-    let tape = Tape::create(&path).map_err(failed(format))?;
+    let file = TapeFile::create(&path, ExistingFile::Keep).map_err(failed(format))?;
+    if file.path() != path {
+        let (new, path) = (file.path().display(), path.display());
+        report::note(console, format, &format!("recording into {new} for {path}, since that file exists"))?;
+    }
+    let path = file.path().to_owned();
+    let tape = Tape::to_file(file).map_err(failed(format))?;
     let options = MatchOptions { seed, record: Some(tape.clone()) };
     let plan = plan(&recording, folder.path(), format)?;
     let mut running = plan.start(options).map_err(failed(format))?;
