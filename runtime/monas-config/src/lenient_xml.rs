@@ -471,26 +471,12 @@ fn begins_entity(text: &str) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use std::time::{Duration, Instant};
-
     use super::*;
 
-    /// The fastest of several repairs, since other tests run at the same time.
-    #[allow(clippy::disallowed_methods, reason = "the effort is measured")]
-    fn effort(separator: &str) -> Duration {
-        let attributes: Vec<String> = (0..4_000).map(|number| format!("a{number}=\"1\"")).collect();
-        let text = format!("<a {}/>", attributes.join(separator));
-        let times = (0..5).map(|_| {
-            let begun = Instant::now();
-            assert!(repair(&text).diagnostics.is_empty());
-            begun.elapsed()
-        });
-        times.min().unwrap_or_default()
-    }
-
+    /// With an effort that grows quadratically this takes minutes.
     #[test]
-    fn a_long_line_costs_as_much_as_many_short_ones() {
-        let (line, lines) = (effort(" "), effort("\n"));
-        assert!(line < 4 * lines, "{line:?}, and {lines:?} in lines");
+    fn a_long_line_of_attributes_is_read() {
+        let attributes: Vec<String> = (0..200_000).map(|number| format!("a{number}=\"1\"")).collect();
+        assert!(repair(&format!("<a {}/>", attributes.join(" "))).diagnostics.is_empty());
     }
 }
