@@ -190,6 +190,24 @@ impl TapeRun {
         &self.0.charts
     }
 
+    /// The hosts with charts.
+    pub fn chart_hosts(&self) -> Vec<&str> {
+        let mut hosts: Vec<&str> = self.charts().iter().map(|chart| chart.host.as_str()).collect();
+        hosts.dedup();
+        hosts
+    }
+
+    /// # Errors
+    /// No chart of this host is on the tape; the message names the hosts.
+    pub fn check_chart_host(&self, host: &str) -> Result<(), String> {
+        let hosts = self.chart_hosts();
+        match hosts[..] {
+            _ if hosts.contains(&host) => Ok(()),
+            [] => Err("no statecharts are recorded in this tape".to_owned()),
+            _ => Err(format!("no host with charts is named `{host}`; there are `{}`", hosts.join("`, `"))),
+        }
+    }
+
     pub(crate) fn channels(&self) -> &[TapeChannel] {
         &self.0.channels
     }

@@ -128,21 +128,13 @@ impl TapeRun {
         agent: Option<&str>,
         find: impl Fn(&TapeChart) -> Result<T, String>,
     ) -> Result<(&TapeChart, T), String> {
-        let of_host: Vec<&TapeChart> = self.charts().iter().filter(|chart| chart.host == host).collect();
-        if of_host.is_empty() {
-            let mut hosts: Vec<&str> = self.charts().iter().map(|chart| chart.host.as_str()).collect();
-            hosts.dedup();
-            return Err(match hosts[..] {
-                [] => "no statecharts are recorded in this tape".to_owned(),
-                _ => format!("no host with charts is named `{host}`; there are `{}`", hosts.join("`, `")),
-            });
-        }
-        let fits = |chart: &&&TapeChart| agent.is_none_or(|agent| chart.agent == agent);
+        self.check_chart_host(host)?;
+        let fits = |chart: &&TapeChart| chart.host == host && agent.is_none_or(|agent| chart.agent == agent);
         let mut unknown = format!("`{host}` has no agent `{}` with a chart", agent.unwrap_or_default());
         let mut found = Vec::new();
-        for chart in of_host.iter().filter(fits) {
+        for chart in self.charts().iter().filter(fits) {
             match find(chart) {
-                Ok(part) => found.push((*chart, part)),
+                Ok(part) => found.push((chart, part)),
                 Err(error) => unknown = format!("{error} in the chart of `{}`", chart.agent),
             }
         }

@@ -133,11 +133,8 @@ struct PlannedChange {
 }
 
 fn changes(arguments: &WhatIfArguments, tape: &TapeRun) -> Result<Vec<PlannedChange>, String> {
-    let mut hosts: Vec<&str> = tape.charts().iter().map(|chart| chart.host.as_str()).collect();
-    hosts.dedup();
-    if let Some(unknown) = arguments.hosts.iter().find(|host| !hosts.contains(&host.as_str())) {
-        return Err(format!("no host with charts is named `{unknown}`; there are `{}`", hosts.join("`, `")));
-    }
+    let mut hosts = tape.chart_hosts();
+    arguments.hosts.iter().try_for_each(|host| tape.check_chart_host(host))?;
     hosts.retain(|host| arguments.hosts.is_empty() || arguments.hosts.iter().any(|wanted| wanted == host));
     let mut planned = Vec::new();
     for setting in &arguments.settings {
