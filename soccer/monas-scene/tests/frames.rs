@@ -5,7 +5,7 @@
 use std::path::{Path, PathBuf};
 
 use monas_scene::RgbImage;
-use monas_vision::{Camera, FieldObjects, HeadPose, Image, PixelBox, Seen, Vision};
+use monas_vision::{Camera, Detections, FieldObjects, HeadPose, Image, PixelBox, Vision};
 
 /// Columns and rows of the pixels that show something: left, top, right, bottom.
 type MarkedBox = [f64; 4];
@@ -50,7 +50,7 @@ fn folder() -> PathBuf {
     shared.join("robots/images")
 }
 
-fn see(file: &Path, pitch: f64) -> Seen {
+fn see(file: &Path, pitch: f64) -> Detections {
     let rgb = RgbImage::read(file).unwrap();
     let mut pixels = Vec::new();
     let width = monas_vision::yuv422_of_rgb(rgb.width, &rgb.bytes, &mut pixels);
@@ -93,7 +93,7 @@ fn real_frames_show_the_ball_and_no_robots_or_posts() {
             assert!(wrong.is_none(), "{file}, {pitch} degrees: a false ball: {wrong:?}");
             assert!(seen.posts.is_empty(), "{file}, {pitch} degrees: false posts: {:?}", seen.posts);
             for robot in &seen.robots {
-                let is_other = others.iter().any(|other| is_inside(&robot.detection.area, other));
+                let is_other = others.iter().any(|other| is_inside(&robot.sight.area, other));
                 assert!(is_other, "{file}, {pitch} degrees: a false robot: {robot:?}");
                 people += 1;
             }

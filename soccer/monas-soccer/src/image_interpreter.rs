@@ -1,8 +1,8 @@
-//! From images to sightings, lines and border.
+//! Derives sightings, lines and border from images.
 
 use monas_robot::{Colour, FieldColours, Image, Images, ObjectKind, ObjectSet, Sensors, Sighting, Sightings};
 use monas_vision::{
-    Camera, Detection, FieldObjects, GoalPaint, GoalPost, GroundPoint, HeadPose, Jersey, LineSegment,
+    Camera, FieldObjects, GoalPaint, GoalPost, GroundObject, GroundPoint, HeadPose, Jersey, LineSegment,
     PostSide, Vision,
 };
 use nalgebra::Point2;
@@ -10,24 +10,25 @@ use nalgebra::Point2;
 use crate::field_colours::colour_model;
 use crate::{FieldLine, FieldLines, FieldPoint};
 
-/// Interprets the images of a robot's cameras: what a body with finished sightings delivers,
-/// derived from pixels.
+/// Interprets the images of a robot's cameras: derives from pixels what other bodies deliver as
+/// finished sightings.
 ///
 /// The pose of a camera follows from the head joints and the inclination of the torso at the time
-/// of the image. How ball and goals look, and the colours with which the calibration begins, are in
-/// the message of the images: who provides the images knows the field, and a role works on any.
+/// of the image. The appearance of ball and goals, and the initial colours of the calibration, are
+/// in the message of the images: the source of the images knows the field, so that roles do not
+/// depend on it.
 #[derive(Clone, Debug, Default)]
 pub struct ImageInterpreter {
     /// None before the first images: most bodies deliver none, and its table of colours takes a
     /// while to compute.
     vision: Option<Vision>,
-    /// How the objects look for which `vision` looks.
+    /// The appearance of the objects that `vision` detects.
     objects: ObjectSet,
     /// The colours of the images with which the calibration began.
     colours: Option<FieldColours>,
 }
 
-/// The objects that images show.
+/// The interpretation of a set of images.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Interpretation {
     /// Ball, posts and robots.
@@ -44,7 +45,7 @@ const MOST_POINTS: usize = 32;
 const SAME_POST: f64 = 0.12;
 
 impl ImageInterpreter {
-    /// Finds objects in images, with the sensor values at the time of their exposure.
+    /// Interprets images, with the sensor readings of the time when they were taken.
     ///
     /// # Errors
     /// An image has no possible size or camera, or its bytes are not those of its size.
@@ -128,7 +129,7 @@ impl ImageInterpreter {
                 Jersey::Red => Colour::Red,
                 Jersey::Unknown => Colour::NoColour,
             };
-            sighting(ObjectKind::Robot, colour, &robot.detection)
+            sighting(ObjectKind::Robot, colour, &robot.sight)
         });
         for found in ball.chain(posts).chain(robots) {
             if !is_known(objects, &found) {
@@ -183,7 +184,7 @@ fn spread(points: Vec<GroundPoint>) -> Vec<FieldPoint> {
     points.iter().step_by(every).map(point).collect()
 }
 
-/// Whether two sightings from different cameras are of one object.
+/// Whether two sightings from different cameras show the same object.
 fn is_same(known: &Sighting, found: &Sighting) -> bool {
     let is_post = |kind| matches!(kind, ObjectKind::LeftPost | ObjectKind::RightPost | ObjectKind::SomePost);
     let beside = (known.bearing - found.bearing).abs();
@@ -206,16 +207,11 @@ fn post(post: &GoalPost) -> Sighting {
         GoalPaint::Blue => Colour::Blue,
         GoalPaint::White => Colour::White,
     };
-    sighting(kind, colour, &post.detection)
+    sighting(kind, colour, &post.sight)
 }
 
-fn sighting(kind: ObjectKind, colour: Colour, detection: &Detection) -> Sighting {
-    Sighting {
-        kind: kind.into(),
-        bearing: detection.bearing,
-        distance: detection.distance,
-        colour: colour.into(),
-    }
+fn sighting(kind: ObjectKind, colour: Colour, sight: &GroundObject) -> Sighting {
+    Sighting { kind: kind.into(), bearing: sight.bearing, distance: sight.distance, colour: colour.into() }
 }
 
 #[cfg(test)]
@@ -272,15 +268,15 @@ mod tests {
 
     #[test]
     fn a_post_in_both_images_counts_once() {
-        let detection = |kind, bearing, colour: Colour| Sighting {
+        let sight = |kind, bearing, colour: Colour| Sighting {
             kind: i32::from(kind),
             bearing,
             distance: 2.0,
             colour: colour.into(),
         };
-        let known = detection(ObjectKind::SomePost, 0.2, Colour::Blue);
-        assert!(is_same(&known, &detection(ObjectKind::LeftPost, 0.25, Colour::Blue)));
-        assert!(!is_same(&known, &detection(ObjectKind::LeftPost, 0.25, Colour::Yellow)));
-        assert!(!is_same(&known, &detection(ObjectKind::LeftPost, 0.6, Colour::Blue)));
+        let known = sight(ObjectKind::SomePost, 0.2, Colour::Blue);
+        assert!(is_same(&known, &sight(ObjectKind::LeftPost, 0.25, Colour::Blue)));
+        assert!(!is_same(&known, &sight(ObjectKind::LeftPost, 0.25, Colour::Yellow)));
+        assert!(!is_same(&known, &sight(ObjectKind::LeftPost, 0.6, Colour::Blue)));
     }
 }

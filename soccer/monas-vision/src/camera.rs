@@ -15,7 +15,7 @@ pub struct Camera {
     height: usize,
     /// Focal length, pixels.
     focal: f64,
-    /// Turns from the frame of the camera to that of the ground.
+    /// Rotation from the camera frame to the ground frame.
     rotation: Matrix3<f64>,
     position: Vector3<f64>,
 }
@@ -114,8 +114,8 @@ impl Camera {
         if above <= 0.0 { 0.0 } else { (self.focal * -self.ray(x, y).z / above).max(0.0) }
     }
 
-    /// Columns from one row to the next of what stands upright at a pixel; zero for a camera that
-    /// is rolled by more than an eighth of a turn.
+    /// Columns per row of the image of a vertical line at a pixel; zero for a camera that is rolled
+    /// by more than an eighth of a turn.
     pub fn slope_of_vertical(&self, x: f64, y: f64) -> f64 {
         let left = (self.width as f64 / 2.0 - x) / self.focal;
         let up = (self.height as f64 / 2.0 - y) / self.focal;

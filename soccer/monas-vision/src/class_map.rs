@@ -3,7 +3,7 @@
 use crate::colour::{ColourClass, ColourTable};
 use crate::{Camera, Image};
 
-/// The classes of which sums are kept.
+/// The classes with integral images.
 const SUMMED: [ColourClass; 4] =
     [ColourClass::Green, ColourClass::White, ColourClass::Dark, ColourClass::Orange];
 
@@ -20,7 +20,7 @@ pub(crate) struct ClassMap {
     horizon: Vec<usize>,
 }
 
-/// The parts of a rectangle that have each class.
+/// The share of each class in a rectangle.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Shares {
     pub(crate) green: f32,

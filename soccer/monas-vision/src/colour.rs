@@ -50,7 +50,7 @@ impl ColourClass {
     }
 }
 
-/// The parameters of a colour table.
+/// The model from which a colour table is computed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ColourModel {
     /// Luma of the carpet, from 0 to 255.
@@ -132,7 +132,7 @@ impl ColourModel {
         }
     }
 
-    /// Whether a table of `other` would be about the same.
+    /// Whether the table of `other` would differ only slightly.
     fn is_near(&self, other: &ColourModel) -> bool {
         let close = |a: f32, b: f32, tolerance: f32| (a - b).abs() <= tolerance;
         close(self.green_luma, other.green_luma, 0.04 * self.green_luma)
@@ -141,7 +141,7 @@ impl ColourModel {
             && (0..2).all(|i| close(self.white[i], other.white[i], 0.015))
     }
 
-    /// The model a part of the way from this to another.
+    /// Interpolates between this model and another.
     pub(crate) fn towards(&self, other: &ColourModel, part: f32) -> ColourModel {
         let mix = |a: f32, b: f32| a + part * (b - a);
         ColourModel {
@@ -235,7 +235,7 @@ const BINS: usize = 64;
 #[derive(Clone, Debug)]
 pub struct Calibration {
     model: ColourModel,
-    /// Whether the model is of this light: of images, or given.
+    /// Whether the model is that of the present light: estimated from images, or given.
     is_measured: bool,
     /// The number of images that contributed.
     images: u32,
@@ -294,7 +294,7 @@ impl Calibration {
         let deviation = (green_luma - quantile(&self.green_luma, 0.16)).clamp(1.0, 0.3 * green_luma.max(4.0));
         let least = (1.35 * green_luma).max(green_luma + 4.0 * deviation).max(40.0);
         self.pale_luma.fill(0);
-        // White is brighter than the carpet, and its chroma is far from that of the carpet.
+        // White is brighter than the carpet and differs from it in chroma.
         let (mut sum, mut count) = ([0.0f32; 2], 0.0f32);
         let size = green[0] * green[0] + green[1] * green[1];
         for_each_sample(image, camera, |[luma, u, v]| {
@@ -312,7 +312,7 @@ impl Calibration {
                 let seen = quantile(&self.pale_luma, 0.6);
                 (seen.max(1.45 * green_luma).min(255.0), [sum[0] / count, sum[1] / count])
             }
-            // No white in the image: what it was, relative to the carpet.
+            // No white in the image: white keeps its ratio to the carpet.
             _ => {
                 let ratio = self.model.white_luma / self.model.green_luma;
                 ((ratio * green_luma).min(255.0), self.model.white)
@@ -337,7 +337,7 @@ impl Calibration {
             }
         });
         let [u, v] = self.peak()?;
-        // The mean of what is near the peak, twice.
+        // The mean of the samples near the peak, computed twice.
         let mut centre = [u, v];
         let mut relative_mean = [0.0f32; 2];
         for _ in 0..2 {
@@ -361,7 +361,7 @@ impl Calibration {
         Some((relative_mean, samples))
     }
 
-    /// The peak of the histogram of chroma, smoothed over 3 x 3 bins.
+    /// Where the histogram of chroma, smoothed over 3 x 3 bins, is highest.
     fn peak(&self) -> Option<[f32; 2]> {
         let (mut best, mut at) = (0u32, None);
         for u in 1..BINS - 1 {

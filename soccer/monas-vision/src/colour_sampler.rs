@@ -3,7 +3,7 @@
 use crate::colour::{for_each_sample, quantile, relative};
 use crate::{Calibration, Camera, ColourClass, ColourModel, ColourTable, Error, ErrorKind, Image, ObjectHue};
 
-/// The greatest part of a sample that another sampled colour may claim.
+/// The largest share of a sample that may be classified as another sampled colour.
 const MOST_OVERLAP: f32 = 0.1;
 
 /// The fewest pixels with colour in a sample.
@@ -28,7 +28,7 @@ pub struct SampleBox {
 /// takes its place. Boxes of objects give their hues.
 #[derive(Clone, Debug, Default)]
 pub struct ColourSampler {
-    /// The estimates of single images.
+    /// The model estimated from each image alone.
     estimates: Vec<ColourModel>,
     /// Colours below the horizon of the images.
     ground: Vec<[u8; 3]>,
@@ -104,7 +104,7 @@ impl ColourSampler {
     /// # Errors
     /// [`Colours`](ErrorKind::Colours) if neither image nor sample shows the carpet, or a sampled
     /// colour cannot be distinguished from another or from the carpet;
-    /// [`Sample`](ErrorKind::Sample) if a sample has too few pixels with colour, or is of many
+    /// [`Sample`](ErrorKind::Sample) if a sample has too few pixels with colour, or has many
     /// colours.
     pub fn model(&self) -> Result<ColourModel, Error> {
         let mut model = self.carpet_and_white()?;
@@ -178,7 +178,7 @@ fn refused(message: impl Into<String>) -> Error {
     Error::new(ErrorKind::Sample, message)
 }
 
-/// The mean of what images show.
+/// The mean of the models of the images.
 fn mean_of(models: &[ColourModel]) -> Option<ColourModel> {
     let mut mean = *models.first()?;
     for (index, model) in models.iter().enumerate().skip(1) {

@@ -18,7 +18,7 @@ pub enum ErrorKind {
     Length,
     /// An angle of view, a height or a pose is not finite or not possible.
     Camera,
-    /// A sample of a colour lies outside its image, holds too few pixels, or is of many colours.
+    /// A sample of a colour lies outside its image, holds too few pixels, or has many colours.
     Sample,
     /// No image shows carpet, or two sampled colours cannot be distinguished.
     Colours,

@@ -10,7 +10,7 @@ const SMALLEST: usize = 16;
 
 /// An image in YUV 4:2:2 over borrowed bytes: two neighbouring pixels are `Y0 U Y1 V`.
 ///
-/// Luma and chroma have the full range of 8 bits, as in JFIF; 128 is no chroma.
+/// Luma and chroma have the full range of 8 bits, as in JFIF; 128 is zero chroma.
 #[derive(Clone, Copy, Debug)]
 pub struct Image<'a> {
     width: usize,

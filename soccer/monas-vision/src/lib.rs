@@ -13,10 +13,9 @@
 //! line points are bright bars between carpet as wide as a line.
 //!
 //! Everything is a function of the images: there are no threads, no clocks and no files. After a
-//! few images [`Vision::see`] does not allocate. [`ColourSampler`] makes the colours with which a
-//! vision may begin from images with boxes of known colours. [`render`] draws images of a field
-//! from a known pose, with noise, blur, exposure and changing light, so that recall and errors can
-//! be measured.
+//! few images [`Vision::see`] does not allocate. [`ColourSampler`] makes an initial colour table
+//! from images with boxes of known colours. [`render`] draws images of a field from a known pose,
+//! with noise, blur, exposure and changing light, so that recall and errors can be measured.
 //!
 //! ```
 //! use monas_vision::render::{Light, Renderer, Scene};
@@ -46,24 +45,25 @@ mod camera;
 mod class_map;
 mod colour;
 mod colour_sampler;
+mod detections;
 mod error;
 mod hue;
 mod image;
 mod objects;
 mod overlay;
 pub mod render;
-mod seen;
 mod vision;
 
 pub use camera::{Camera, HeadPose};
 pub use colour::{Calibration, ColourClass, ColourModel, ColourTable};
 pub use colour_sampler::{ColourSampler, SampleBox};
+pub use detections::{
+    DetectedRobot, Detections, GoalPaint, GoalPost, GroundObject, GroundPoint, Jersey, LineSegment, PixelBox,
+    PostSide,
+};
 pub use error::{Error, ErrorKind};
 pub use hue::ObjectHue;
 pub use image::{Image, rgb_of_yuv, yuv_of_rgb, yuv422_of_rgb};
 pub use objects::{BallPattern, FieldObjects};
 pub use overlay::overlay;
-pub use seen::{
-    Detection, GoalPaint, GoalPost, GroundPoint, Jersey, LineSegment, PixelBox, PostSide, Seen, SeenRobot,
-};
 pub use vision::Vision;

@@ -1,7 +1,7 @@
-//! Draws the sightings over their image.
+//! Draws detections over their image.
 
 use crate::image::rgb_of_yuv;
-use crate::{GoalPaint, Image, Jersey, PixelBox, Seen};
+use crate::{Detections, GoalPaint, Image, Jersey, PixelBox};
 
 const BORDER: [u8; 3] = [255, 0, 255];
 const BORDER_POINT: [u8; 3] = [255, 255, 80];
@@ -16,7 +16,7 @@ const ROBOT: [u8; 3] = [255, 255, 255];
 /// The image in RGB, with the border of the field (magenta) and its points (yellow crosses), lines
 /// (cyan) and their points (red), the ball (an orange circle), posts (boxes in the colour of the
 /// goal, violet if it is white) and robots (boxes in the colour of the jersey, white without).
-pub fn overlay(image: &Image<'_>, seen: &Seen) -> Vec<u8> {
+pub fn overlay(image: &Image<'_>, seen: &Detections) -> Vec<u8> {
     let mut canvas = Canvas::of(image);
     for pair in seen.border.windows(2) {
         canvas.line(pair[0], pair[1], BORDER);
@@ -39,7 +39,7 @@ pub fn overlay(image: &Image<'_>, seen: &Seen) -> Vec<u8> {
             GoalPaint::Yellow => YELLOW_POST,
             GoalPaint::Blue => BLUE_POST,
         };
-        canvas.frame(&post.detection.area, colour);
+        canvas.frame(&post.sight.area, colour);
     }
     for robot in &seen.robots {
         let colour = match robot.jersey {
@@ -47,7 +47,7 @@ pub fn overlay(image: &Image<'_>, seen: &Seen) -> Vec<u8> {
             Jersey::Red => LINE_POINT,
             Jersey::Unknown => ROBOT,
         };
-        canvas.frame(&robot.detection.area, colour);
+        canvas.frame(&robot.sight.area, colour);
     }
     if let Some(ball) = &seen.ball {
         canvas.circle(&ball.area, BALL);
@@ -114,7 +114,7 @@ impl Canvas {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Detection;
+    use crate::GroundObject;
     use nalgebra::Point2;
 
     #[test]
@@ -122,8 +122,8 @@ mod tests {
         let pixels = vec![128; 2 * 64 * 48];
         let image = Image::new(64, 48, &pixels).unwrap();
         let area = PixelBox { left: 20.0, top: 20.0, right: 30.0, bottom: 30.0 };
-        let ball = Some(Detection::new(Point2::new(1.0, 0.0), area));
-        let rgb = overlay(&image, &Seen { ball, ..Seen::default() });
+        let ball = Some(GroundObject::new(Point2::new(1.0, 0.0), area));
+        let rgb = overlay(&image, &Detections { ball, ..Detections::default() });
         let at = |x: usize, y: usize| &rgb[3 * (y * 64 + x)..3 * (y * 64 + x) + 3];
         assert_eq!((at(30, 25), at(25, 25), at(5, 5)), (&BALL[..], &[128; 3][..], &[128; 3][..]));
         assert_eq!(rgb.len(), 3 * 64 * 48);
@@ -134,6 +134,6 @@ mod tests {
         let pixels = vec![128; 2 * 64 * 48];
         let image = Image::new(64, 48, &pixels).unwrap();
         let border = vec![[-1e9, 10.0], [1e9, 10.0]];
-        assert_eq!(overlay(&image, &Seen { border, ..Seen::default() }).len(), 3 * 64 * 48);
+        assert_eq!(overlay(&image, &Detections { border, ..Detections::default() }).len(), 3 * 64 * 48);
     }
 }

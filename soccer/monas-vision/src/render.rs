@@ -58,7 +58,7 @@ impl Renderer {
     }
 
     fn draw_ground(&mut self, scene: &Scene, camera: &Camera, shading: &Shading) {
-        /// The positions of a pixel's samples, so that thin lines do not break.
+        /// The positions of the samples in a pixel, so that thin lines do not break.
         const SAMPLES: [f64; 2] = [0.25, 0.75];
         self.colours.clear();
         self.depths.clear();

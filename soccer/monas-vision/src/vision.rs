@@ -1,4 +1,4 @@
-//! From an image to what it shows.
+//! Detects objects in images.
 
 mod ball;
 mod border;
@@ -8,7 +8,7 @@ mod robots;
 
 use crate::class_map::ClassMap;
 use crate::colour::{Calibration, ColourModel, ColourTable};
-use crate::{Camera, Error, ErrorKind, FieldObjects, Image, Seen};
+use crate::{Camera, Detections, Error, ErrorKind, FieldObjects, Image};
 
 use ball::BallSearch;
 use border::BorderScan;
@@ -34,10 +34,10 @@ pub struct Vision {
     lines: LineScan,
     posts: PostScan,
     robots: RobotScan,
-    seen: Seen,
+    seen: Detections,
 }
 
-/// An image that is looked at: what all searches need.
+/// The present image, with the data that all searches need.
 pub(crate) struct ImageContext<'a> {
     pub(crate) image: &'a Image<'a>,
     pub(crate) camera: &'a Camera,
@@ -60,7 +60,7 @@ impl Vision {
             lines: LineScan::default(),
             posts: PostScan::default(),
             robots: RobotScan::default(),
-            seen: Seen::default(),
+            seen: Detections::default(),
         }
     }
 
@@ -80,12 +80,12 @@ impl Vision {
         &self.table
     }
 
-    /// Finds the objects in an image. Positions are in the frame on the ground in which the pose of
-    /// the camera is given.
+    /// Detects the objects in an image taken by a camera. Positions are in the ground frame in
+    /// which the pose of the camera is given.
     ///
     /// # Errors
     /// [`Size`](ErrorKind::Size) if the camera takes images of another size.
-    pub fn see(&mut self, image: &Image<'_>, camera: &Camera) -> Result<&Seen, Error> {
+    pub fn see(&mut self, image: &Image<'_>, camera: &Camera) -> Result<&Detections, Error> {
         if (image.width(), image.height()) != (camera.width(), camera.height()) {
             let message = format!(
                 "an image of {} x {} pixels of a camera with {} x {}",

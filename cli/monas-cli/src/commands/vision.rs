@@ -9,7 +9,8 @@ use monas::config::colours;
 use monas_scene::RgbImage;
 use monas_soccer::field_colours::colour_model;
 use monas_vision::{
-    Camera, ColourModel, Detection, FieldObjects, GoalPaint, HeadPose, Image, Jersey, PostSide, Seen, Vision,
+    Camera, ColourModel, Detections, FieldObjects, GoalPaint, GroundObject, HeadPose, Image, Jersey,
+    PostSide, Vision,
 };
 use serde_json::json;
 
@@ -42,15 +43,15 @@ pub(crate) struct VisionArguments {
     /// The folder for the overlays.
     #[arg(short, long, value_name = "FOLDER", default_value = ".", value_hint = ValueHint::DirPath)]
     output: PathBuf,
-    /// Begins with the colours of this table, in place of those of the image alone.
+    /// Start from the colours of this table instead of those of the image alone.
     #[arg(long, value_name = "TABLE", value_hint = ValueHint::FilePath)]
     colours: Option<PathBuf>,
-    /// Makes a colour table from the images, in place of overlays: for `--colours`, and for the
+    /// Make a colour table from the images instead of overlays: for `--colours`, and for the
     /// attribute `colours` of a body.
     #[arg(long, value_name = "TABLE", value_hint = ValueHint::FilePath, conflicts_with = "colours")]
     calibrate: Option<PathBuf>,
     /// A box of an image with a known colour: green (carpet), white (lines), orange, yellow, blue
-    /// or red. With several images, FILE says in which it is.
+    /// or red. With several images, FILE names the image.
     #[arg(
         long = "sample",
         value_name = "[FILE:]COLOUR=X,Y,WIDTH,HEIGHT",
@@ -136,16 +137,16 @@ fn overlay_path(file: &Path, folder: &Path) -> PathBuf {
     folder.join(format!("{name}.seen.png"))
 }
 
-/// A row of the table.
-struct ObjectRow<'a> {
+/// A row of the table: object, kind and position.
+struct SeenObject<'a> {
     what: &'static str,
     kind: &'static str,
-    detection: &'a Detection,
+    sight: &'a GroundObject,
 }
 
-fn objects_of(seen: &Seen) -> Vec<ObjectRow<'_>> {
-    let ball = seen.ball.iter().map(|detection| ObjectRow { what: "ball", kind: "", detection });
-    let posts = seen.posts.iter().map(|post| ObjectRow {
+fn objects_of(seen: &Detections) -> Vec<SeenObject<'_>> {
+    let ball = seen.ball.iter().map(|sight| SeenObject { what: "ball", kind: "", sight });
+    let posts = seen.posts.iter().map(|post| SeenObject {
         what: match post.side {
             PostSide::Left => "left post",
             PostSide::Right => "right post",
@@ -156,16 +157,16 @@ fn objects_of(seen: &Seen) -> Vec<ObjectRow<'_>> {
             GoalPaint::Blue => "blue",
             GoalPaint::White => "white",
         },
-        detection: &post.detection,
+        sight: &post.sight,
     });
-    let robots = seen.robots.iter().map(|robot| ObjectRow {
+    let robots = seen.robots.iter().map(|robot| SeenObject {
         what: "robot",
         kind: match robot.jersey {
             Jersey::Blue => "blue",
             Jersey::Red => "red",
             Jersey::Unknown => "",
         },
-        detection: &robot.detection,
+        sight: &robot.sight,
     });
     ball.chain(posts).chain(robots).collect()
 }
@@ -173,16 +174,16 @@ fn objects_of(seen: &Seen) -> Vec<ObjectRow<'_>> {
 fn report(
     file: &Path,
     drawn: &Path,
-    seen: &Seen,
+    seen: &Detections,
     format: Format,
     console: &mut CommandOutput<'_>,
 ) -> Result<(), CommandFailure> {
     let objects = objects_of(seen);
     if format == Format::Json {
-        let objects = objects.iter().map(|ObjectRow { what, kind, detection }| {
-            let area = &detection.area;
+        let objects = objects.iter().map(|SeenObject { what, kind, sight }| {
+            let area = &sight.area;
             json!({
-                "what": what, "kind": kind, "distance": detection.distance, "bearing": detection.bearing,
+                "what": what, "kind": kind, "distance": sight.distance, "bearing": sight.bearing,
                 "box": [area.left, area.top, area.right, area.bottom],
             })
         });
@@ -202,13 +203,13 @@ fn report(
     let border = if seen.border.is_empty() { "no field border" } else { "a field border" };
     writeln!(console.out, "{}: {border}, {lines} lines of {points} points", file.display())?;
     if !objects.is_empty() {
-        let rows = objects.iter().map(|ObjectRow { what, kind, detection }| {
-            let area = &detection.area;
+        let rows = objects.iter().map(|SeenObject { what, kind, sight }| {
+            let area = &sight.area;
             [
                 (*what).to_owned(),
                 (*kind).to_owned(),
-                format!("{:.2}", detection.distance),
-                format!("{:.1}", detection.bearing.to_degrees()),
+                format!("{:.2}", sight.distance),
+                format!("{:.1}", sight.bearing.to_degrees()),
                 format!("{:.0},{:.0} {:.0},{:.0}", area.left, area.top, area.right, area.bottom),
             ]
         });

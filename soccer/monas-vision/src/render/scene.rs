@@ -1,4 +1,4 @@
-//! The field and its surroundings, for the renderer.
+//! The scene to draw: a field and its surroundings.
 
 use nalgebra::{Point2, Point3, Vector2, Vector3};
 
@@ -60,7 +60,7 @@ pub struct RobotFigure {
     pub lies: bool,
 }
 
-/// The objects, colours and lights of a rendered image.
+/// The objects in view.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
     /// The field.
@@ -75,7 +75,7 @@ pub struct Scene {
     pub variant: u64,
 }
 
-/// The light, and what the camera makes of it.
+/// The light, and the faults of the camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Light {
     /// Brightness: 1 shows white carpet lines near the top of the range; 2 saturates.

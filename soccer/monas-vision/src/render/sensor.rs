@@ -1,4 +1,4 @@
-//! The model of a camera's sensor: blur, exposure, noise, and the conversion to YUV 4:2:2.
+//! The camera sensor: blur, exposure, noise, and the conversion to YUV 4:2:2.
 
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg64;
@@ -55,7 +55,7 @@ impl Sensor {
         self.kernel.iter_mut().for_each(|weight| *weight /= sum);
     }
 
-    /// Blurs along rows. Pixels beyond an edge look like the edge.
+    /// Blurs along rows. What is beyond an edge looks like the edge.
     fn blur_rows(&mut self, colours: &mut Vec<Rgb>, width: usize) {
         let reach = self.kernel.len() / 2;
         self.blurred.clear();

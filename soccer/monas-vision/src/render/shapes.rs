@@ -37,7 +37,7 @@ pub(super) enum Solid {
     },
 }
 
-/// The intersection of a ray and a solid.
+/// Where a ray meets a solid.
 pub(super) struct Hit {
     /// In multiples of the ray.
     pub(super) length: f64,

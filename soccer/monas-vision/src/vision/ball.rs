@@ -5,8 +5,8 @@ use nalgebra::Point2;
 use super::ImageContext;
 use super::border::BorderScan;
 use crate::colour::ColourClass;
+use crate::detections::{GroundObject, PixelBox};
 use crate::objects::BallPattern;
-use crate::seen::{Detection, PixelBox};
 
 /// The most candidates that are checked.
 const MOST: usize = 12;
@@ -21,7 +21,7 @@ pub(crate) struct BallSearch {
     edges: Vec<(f64, f64)>,
 }
 
-/// A place where a ball may be; in cells.
+/// A candidate for the ball, in cells.
 #[derive(Clone, Copy, Debug)]
 struct BallCandidate {
     x: f32,
@@ -39,7 +39,7 @@ struct Circle {
 }
 
 impl BallSearch {
-    pub(crate) fn search(&mut self, context: &ImageContext<'_>, border: &BorderScan) -> Option<Detection> {
+    pub(crate) fn search(&mut self, context: &ImageContext<'_>, border: &BorderScan) -> Option<GroundObject> {
         self.collect(context, border);
         let mut best: Option<(f64, Circle)> = None;
         for index in 0..self.candidates.len() {
@@ -51,7 +51,7 @@ impl BallSearch {
         }
         let (_, circle) = best?;
         let position = context.camera.point_at_height(circle.x, circle.y, context.objects.ball_radius)?;
-        Some(Detection::new(position, circle.area()))
+        Some(GroundObject::new(position, circle.area()))
     }
 
     /// Collects the best places, where a square of the size of the ball differs from the carpet
@@ -201,7 +201,7 @@ impl BallSearch {
                     }
                     outside += 1;
                 }
-                // Two pixels beyond the edge are enough.
+                // Two pixels beyond the edge suffice.
                 if f64::from(outside) * pace >= 1.6 {
                     self.edges.push((circle.x + outside_from * cos, circle.y + outside_from * sin));
                     break;
@@ -293,7 +293,7 @@ impl ImageContext<'_> {
         (0..RAYS).filter(is_within).count().max(RAYS / 2) as f64
     }
 
-    /// How much what a circle encloses is like the ball, from 0 to 1; none if it is not.
+    /// The similarity of the content of a circle to a ball, from 0 to 1; none if it is no ball.
     fn content(&self, circle: &Circle) -> Option<f64> {
         let pace = (circle.radius / 8.0).max(1.0);
         let reach = (0.85 * circle.radius / pace) as i32;
@@ -329,7 +329,7 @@ impl ImageContext<'_> {
             BallPattern::Orange => (share(orange) > 0.7).then(|| share(orange)),
             BallPattern::BlackAndWhite => {
                 let contrast = f64::from(darkest) / f64::from(brightest.max(1));
-                // A white object is dark at its lower end, where the light does not reach.
+                // A white object is dark at its lower end, which the light does not reach.
                 let has_patch_above = 50 * dark_above > upper;
                 let is_patched =
                     share(dark) > 0.04 && share(dark) < 0.75 && contrast < 0.48 && has_patch_above;

@@ -1,18 +1,19 @@
 //! The border of the field: where the carpet begins in each column.
 
 use super::ImageContext;
-use crate::Seen;
+use crate::Detections;
 use crate::colour::ColourClass;
-use crate::seen::GroundPoint;
+use crate::detections::GroundPoint;
 
 /// Cells between two columns that are scanned.
 const SPACING: usize = 4;
 
 /// The search for the border of the field.
 ///
-/// In each scanned column it is the row for which the carpet below it, less all else below it, is
-/// most (the method of the field border of B-Human and of the field contour of Nao-Team HTWK). The
-/// upper convex hull of these points removes what stands on the field and hides the border.
+/// In each scanned column it is the row that maximises the carpet cells below it minus the other
+/// cells below it (the method of the field border of B-Human and of the field contour of Nao-Team
+/// HTWK). The upper convex hull of these points removes what stands on the field and hides the
+/// border.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct BorderScan {
     /// The first row of the field in each scanned column; `None` without carpet.
@@ -29,7 +30,7 @@ impl BorderScan {
         self.rows.get(column).copied().unwrap_or(f32::MAX)
     }
 
-    pub(crate) fn scan(&mut self, context: &ImageContext<'_>, seen: &mut Seen) {
+    pub(crate) fn scan(&mut self, context: &ImageContext<'_>, seen: &mut Detections) {
         let map = context.map;
         self.raw.clear();
         self.raw.extend(
@@ -99,7 +100,7 @@ impl BorderScan {
     }
 }
 
-/// The row for which carpet below less all else below is most.
+/// The row that maximises the carpet cells below it minus the other cells below it.
 fn first_of_field(context: &ImageContext<'_>, column: usize) -> Option<usize> {
     /// Least surplus of carpet, cells.
     const LEAST: i32 = 5;

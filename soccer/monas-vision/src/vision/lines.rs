@@ -2,9 +2,9 @@
 
 use super::ImageContext;
 use super::border::BorderScan;
-use crate::Seen;
+use crate::Detections;
 use crate::colour::ColourClass;
-use crate::seen::{Detection, GroundPoint, LineSegment, PixelBox};
+use crate::detections::{GroundObject, GroundPoint, LineSegment, PixelBox};
 
 /// Pixels between scanned columns and between scanned rows, in an image of 640 columns.
 const COLUMN_SPACING: usize = 6;
@@ -54,7 +54,7 @@ impl LineScan {
         context: &ImageContext<'_>,
         border: &BorderScan,
         cut: &[PixelBox],
-        seen: &mut Seen,
+        seen: &mut Detections,
     ) {
         let (width, height) = (context.image.width(), context.image.height());
         let part = |spacing: usize| (spacing * width / 640).max(2);
@@ -85,7 +85,7 @@ impl LineScan {
         cut: &[PixelBox],
         axis: ScanAxis,
         at: usize,
-        seen: &mut Seen,
+        seen: &mut Detections,
     ) {
         let step = context.map.step;
         let (start, end) = match axis {
@@ -291,17 +291,17 @@ fn is_on_field(context: &ImageContext<'_>, border: &BorderScan, point: &GroundPo
 }
 
 /// Whether a point belongs to a ball, a post, a robot or another body.
-fn is_on_object(seen: &Seen, bodies: &[PixelBox], point: &GroundPoint) -> bool {
+fn is_on_object(seen: &Detections, bodies: &[PixelBox], point: &GroundPoint) -> bool {
     let [x, y] = point.pixel;
     let holds = |area: &PixelBox, margin: f64| {
         (area.left - margin..area.right + margin).contains(&x)
             && (area.top - margin..area.bottom + margin).contains(&y)
     };
     let within = |area: &PixelBox| holds(area, 0.1 * (area.right - area.left) + 2.0);
-    let of = |detection: &Detection| within(&detection.area);
+    let of = |sight: &GroundObject| within(&sight.area);
     seen.ball.as_ref().is_some_and(of)
-        || seen.posts.iter().any(|post| of(&post.detection))
-        || seen.robots.iter().any(|robot| of(&robot.detection))
+        || seen.posts.iter().any(|post| of(&post.sight))
+        || seen.robots.iter().any(|robot| of(&robot.sight))
         || bodies.iter().any(within)
 }
 

@@ -3,7 +3,7 @@
 use super::ImageContext;
 use super::border::BorderScan;
 use crate::colour::ColourClass;
-use crate::seen::{Detection, GoalPaint, GoalPost, PixelBox, PostSide};
+use crate::detections::{GoalPaint, GoalPost, GroundObject, PixelBox, PostSide};
 
 /// The number of rows that are scanned for posts.
 const ROWS: usize = 5;
@@ -16,7 +16,7 @@ const LEAST_WHITE: f64 = 0.62;
 /// The search for goal posts.
 ///
 /// Coloured posts are higher than the camera, so each crosses the horizon, or leaves the image at
-/// its top. The background of a white post above the field may be white too, so white posts are
+/// its top. What is behind a white post above the field may be white too, so white posts are
 /// searched where they cross the border of the field.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct PostScan {
@@ -42,9 +42,9 @@ impl PostScan {
             while column < self.columns.len() {
                 let end = self.end_of_run(column);
                 if end > column
-                    && let Some(detection) = post(context, border, paint, class, column, end)
+                    && let Some(sight) = post(context, border, paint, class, column, end)
                 {
-                    posts.push(GoalPost { detection, paint, side: PostSide::Unknown });
+                    posts.push(GoalPost { sight, paint, side: PostSide::Unknown });
                 }
                 column = end.max(column + 1);
             }
@@ -52,7 +52,7 @@ impl PostScan {
                 (left.side, right.side) = (PostSide::Left, PostSide::Right);
             }
         }
-        posts.sort_unstable_by(|a, b| a.detection.area.left.total_cmp(&b.detection.area.left));
+        posts.sort_unstable_by(|a, b| a.sight.area.left.total_cmp(&b.sight.area.left));
     }
 
     fn mark(&mut self, context: &ImageContext<'_>, border: &BorderScan, class: ColourClass) {
@@ -100,10 +100,10 @@ fn post(
     class: ColourClass,
     left: usize,
     right: usize,
-) -> Option<Detection> {
+) -> Option<GroundObject> {
     let (map, step) = (context.map, context.map.step as f64);
     let middle = (left + right) / 2;
-    // If the field fills the image to its upper edge, a leg of a robot and a post look the same.
+    // Where the field fills the image to its upper edge, a leg of a robot and a post look the same.
     if paint == GoalPaint::White && border.row(middle) < 2.0 {
         return None;
     }
@@ -168,7 +168,7 @@ fn post(
     }
     let area =
         PixelBox { left: left as f64 * step, top: top as f64 * step, right: right as f64 * step, bottom };
-    Some(Detection::new(position, area))
+    Some(GroundObject::new(position, area))
 }
 
 /// A bar of one colour that is upright on the ground, in cells.

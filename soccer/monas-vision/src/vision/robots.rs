@@ -1,10 +1,10 @@
-//! Other robots: what stands on the carpet and is as high and wide as a robot.
+//! Other robots: obstacles on the carpet that are as high and wide as a robot.
 
 use super::ImageContext;
 use super::border::BorderScan;
 use crate::colour::ColourClass;
-use crate::seen::{Detection, Jersey, PixelBox, SeenRobot};
-use crate::{GoalPost, Seen};
+use crate::detections::{DetectedRobot, GroundObject, Jersey, PixelBox};
+use crate::{Detections, GoalPost};
 
 /// Least height of what may be a robot, m: higher than a ball.
 const LEAST_HEIGHT: f64 = 0.22;
@@ -31,7 +31,7 @@ pub(crate) struct RobotScan {
 }
 
 impl RobotScan {
-    pub(crate) fn scan(&mut self, context: &ImageContext<'_>, border: &BorderScan, seen: &mut Seen) {
+    pub(crate) fn scan(&mut self, context: &ImageContext<'_>, border: &BorderScan, seen: &mut Detections) {
         self.feet.clear();
         let columns = (0..context.map.columns).step_by(SPACING);
         self.feet.extend(columns.map(|column| {
@@ -54,8 +54,7 @@ impl RobotScan {
             start = end.max(start + 1);
         }
         drop_arms(context, &mut seen.robots);
-        seen.robots
-            .retain(|robot| !self.cut.iter().any(|body| is_part_of(context, &robot.detection.area, body)));
+        seen.robots.retain(|robot| !self.cut.iter().any(|body| is_part_of(context, &robot.sight.area, body)));
     }
 
     /// The bodies that the lower edge of the image cuts.
@@ -81,7 +80,7 @@ impl RobotScan {
     }
 }
 
-/// An object in a group of columns that is as high and wide as a robot, in cells.
+/// An obstacle in a group of columns that is as high and wide as a robot, in cells.
 #[derive(Clone, Copy, Debug)]
 struct Body {
     left: usize,
@@ -147,12 +146,12 @@ impl Body {
         }
     }
 
-    fn robot(&self, context: &ImageContext<'_>) -> Option<SeenRobot> {
+    fn robot(&self, context: &ImageContext<'_>) -> Option<DetectedRobot> {
         let area = self.area(context);
         let near = context.camera.point_at_height((area.left + area.right) / 2.0, area.bottom, 0.0)?;
         let away = near - context.camera.position().xy();
         let position = near + away.normalize() * HALF_DEPTH;
-        Some(SeenRobot { detection: Detection::new(position, area), jersey: self.jersey(context) })
+        Some(DetectedRobot { sight: GroundObject::new(position, area), jersey: self.jersey(context) })
     }
 
     /// The colour of the jersey: the more frequent one between hips and shoulders.
@@ -176,8 +175,8 @@ impl Body {
     }
 }
 
-/// Whether what seems to be a robot is a part of a body that the lower edge of the image cuts: it
-/// touches the body, or it is an arm.
+/// Whether a candidate is a part of a body that the lower edge of the image cuts: it touches the
+/// body, or it is an arm.
 fn is_part_of(context: &ImageContext<'_>, area: &PixelBox, body: &PixelBox) -> bool {
     let is_beside = |gap: f64| area.left <= body.right + gap && area.right >= body.left - gap;
     let touches = is_beside((2 * SPACING * context.map.step) as f64);
@@ -204,12 +203,12 @@ impl ImageContext<'_> {
 
 /// Removes arms beside a robot: their lower ends are above the ground, so they seem to be narrow
 /// and farther away.
-fn drop_arms(context: &ImageContext<'_>, robots: &mut Vec<SeenRobot>) {
+fn drop_arms(context: &ImageContext<'_>, robots: &mut Vec<DetectedRobot>) {
     let width = |area: &PixelBox| area.right - area.left;
-    let is_arm = |one: &SeenRobot, of: &SeenRobot| {
-        let (arm, body) = (&one.detection.area, &of.detection.area);
+    let is_arm = |one: &DetectedRobot, of: &DetectedRobot| {
+        let (arm, body) = (&one.sight.area, &of.sight.area);
         let gap = ARM_GAP * ground_scale(context, body);
-        one.detection.distance > of.detection.distance
+        one.sight.distance > of.sight.distance
             && width(arm) < ARM * ground_scale(context, arm)
             && arm.left < body.right + gap
             && arm.right > body.left - gap
@@ -227,8 +226,8 @@ fn drop_arms(context: &ImageContext<'_>, robots: &mut Vec<SeenRobot>) {
 /// Whether a column shows a post that was found.
 fn is_beside(context: &ImageContext<'_>, post: &GoalPost, column: usize) -> bool {
     let x = column as f64 * context.map.step as f64;
-    let margin = 0.3 * (post.detection.area.right - post.detection.area.left) + 2.0;
-    (post.detection.area.left - margin..post.detection.area.right + margin).contains(&x)
+    let margin = 0.3 * (post.sight.area.right - post.sight.area.left) + 2.0;
+    (post.sight.area.left - margin..post.sight.area.right + margin).contains(&x)
 }
 
 /// Whether two neighbouring columns show feet at about the same distance.
@@ -239,7 +238,7 @@ fn is_same_body(context: &ImageContext<'_>, index: usize, one: usize, other: usi
     (one.abs_diff(other) as f64) < 0.14 * scale + 2.0
 }
 
-/// The foot of the nearest thing in a column that is high enough.
+/// The foot of the nearest obstacle in a column that is high enough.
 fn foot(context: &ImageContext<'_>, border: &BorderScan, column: usize) -> Option<usize> {
     let (map, step) = (context.map, context.map.step as f64);
     let x = (column as f64 + 0.5) * step;

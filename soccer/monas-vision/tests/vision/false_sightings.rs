@@ -1,9 +1,9 @@
-//! No ball, post or robot is found where there is none: near robots, near robots that lie, and on
-//! carpet that a light bleaches.
+//! No ball, post or robot is detected where there is none: near robots, near robots that lie, and
+//! on carpet that a light bleaches.
 #![allow(clippy::unwrap_used, reason = "a test")]
 
 use monas_vision::render::{Light, Renderer, RobotFigure, Scene};
-use monas_vision::{Camera, FieldObjects, HeadPose, Image, Jersey, Seen, Vision};
+use monas_vision::{Camera, Detections, FieldObjects, HeadPose, Image, Jersey, Vision};
 use nalgebra::{Isometry3, Point2};
 
 use crate::examines_large_images;
@@ -60,7 +60,7 @@ fn camera(pitch: f64) -> Camera {
 }
 
 /// Draws a scene, changes its pixels, and looks at them.
-fn see(robots: Vec<RobotFigure>, camera: &Camera, change: impl Fn(&mut [u8])) -> Seen {
+fn see(robots: Vec<RobotFigure>, camera: &Camera, change: impl Fn(&mut [u8])) -> Detections {
     let objects = FieldObjects::OF_TODAY;
     let scene = Scene { markings: Default::default(), objects, ball: None, robots, variant: 1 };
     let (mut pixels, light) = (Vec::new(), Light { noise: 3.5, blur: 0.7, ..Light::default() });
@@ -113,5 +113,5 @@ fn a_robot_in_a_patch_of_light_is_seen() {
         RobotFigure { position: Point2::new(2.2, 0.0), heading: 0.3, jersey: Jersey::Red, lies: false };
     let seen = see(vec![robot], &camera(0.15), |pixels| bleach(pixels, [320.0, 130.0], 100.0));
     assert_eq!(seen.robots.len(), 1, "{:?}", seen.robots);
-    assert!((seen.robots[0].detection.distance - 2.2).abs() < 0.2, "{:?}", seen.robots);
+    assert!((seen.robots[0].sight.distance - 2.2).abs() < 0.2, "{:?}", seen.robots);
 }

@@ -1,4 +1,4 @@
-//! Sightings in images of the renderer, in many lights.
+//! Detections in images of the renderer, in many lights.
 #![allow(clippy::unwrap_used)] // tests
 
 /// Whether hundreds of images of 640 by 480 pixels are examined, as in `.ci/run`; else a note is

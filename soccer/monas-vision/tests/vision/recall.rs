@@ -7,7 +7,7 @@ use monas_vision::FieldObjects;
 use crate::examines_large_images;
 use crate::measure::{CONDITIONS, Measures, Sequence, Tally, Views, mean, ninth_decile};
 
-/// The bounds on the sightings of a kind of object, over all lights.
+/// The bounds on the detections of a kind of object, over all lights.
 struct Bounds {
     /// Least number shown, so that the others mean something.
     shown: u32,

@@ -8,7 +8,7 @@
 use std::fmt;
 
 use monas_vision::render::{FieldMarkings, Light, Renderer, RobotFigure, Scene};
-use monas_vision::{Camera, Detection, FieldObjects, HeadPose, Jersey, LineSegment, Seen, Vision};
+use monas_vision::{Camera, Detections, FieldObjects, GroundObject, HeadPose, Jersey, LineSegment, Vision};
 use nalgebra::{Isometry2, Isometry3, Point2, Point3, UnitQuaternion, Vector2, Vector3};
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg64;
@@ -83,7 +83,7 @@ fn camera_light() -> Light {
     Light { noise: 3.5, blur: 0.7, ..Light::default() }
 }
 
-/// The visible and the found objects of a kind.
+/// The visible and the detected objects of a kind.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Tally {
     /// Objects that were in view and in range, and how many of them were seen.
@@ -101,10 +101,10 @@ impl Tally {
         f64::from(self.found) / f64::from(self.shown.max(1))
     }
 
-    fn note(&mut self, detection: &Detection, truth: &Point2<f64>) {
+    fn note(&mut self, sight: &GroundObject, truth: &Point2<f64>) {
         let distance = truth.coords.norm();
-        self.distance_errors.push((detection.distance - distance).abs() / distance);
-        self.bearing_errors.push((detection.bearing - libm::atan2(truth.y, truth.x)).abs());
+        self.distance_errors.push((sight.distance - distance).abs() / distance);
+        self.bearing_errors.push((sight.bearing - libm::atan2(truth.y, truth.x)).abs());
     }
 
     fn add(&mut self, other: &Tally) {
@@ -293,7 +293,7 @@ impl Random {
     }
 }
 
-/// The pose of the robot at the time of an image, and its surroundings.
+/// Where the robot is at the time of an image, and what is around it.
 struct View {
     scene: Scene,
     field_from_robot: Isometry2<f64>,
@@ -381,7 +381,7 @@ impl View {
         [(x, y), (x, -y), (-x, y), (-x, -y)].into_iter().map(|(x, y)| Point2::new(x, y))
     }
 
-    fn compare(&self, seen: &Seen, camera: &Camera, measures: &mut Measures) {
+    fn compare(&self, seen: &Detections, camera: &Camera, measures: &mut Measures) {
         self.compare_ball(seen, camera, &mut measures.ball);
         self.compare_posts(seen, camera, &mut measures.posts);
         self.compare_robots(seen, camera, measures);
@@ -391,7 +391,7 @@ impl View {
         self.compare_border_points(seen, &mut measures.border_points);
     }
 
-    fn compare_ball(&self, seen: &Seen, camera: &Camera, tally: &mut Tally) {
+    fn compare_ball(&self, seen: &Detections, camera: &Camera, tally: &mut Tally) {
         let radius = self.scene.objects.ball_radius;
         let truth = self.scene.ball.map(|ball| (ball, self.to_robot(ball)));
         if let Some((ball, own)) = truth
@@ -400,16 +400,16 @@ impl View {
             && !self.is_hidden(ball, None, radius)
         {
             tally.shown += 1;
-            if let Some(detection) = seen.ball.as_ref().filter(|detection| is_near(detection, &own, 0.2)) {
+            if let Some(sight) = seen.ball.as_ref().filter(|sight| is_near(sight, &own, 0.2)) {
                 tally.found += 1;
-                tally.note(detection, &own);
+                tally.note(sight, &own);
             }
         }
-        let is_true = |detection: &Detection| truth.is_some_and(|(_, own)| is_near(detection, &own, 0.25));
-        tally.wrong += u32::from(seen.ball.as_ref().is_some_and(|detection| !is_true(detection)));
+        let is_true = |sight: &GroundObject| truth.is_some_and(|(_, own)| is_near(sight, &own, 0.25));
+        tally.wrong += u32::from(seen.ball.as_ref().is_some_and(|sight| !is_true(sight)));
     }
 
-    fn compare_posts(&self, seen: &Seen, camera: &Camera, tally: &mut Tally) {
+    fn compare_posts(&self, seen: &Detections, camera: &Camera, tally: &mut Tally) {
         for post in self.posts() {
             let own = self.to_robot(post);
             let is_shown = within(camera, Point3::new(post.x, post.y, 0.0), 0.06)
@@ -418,17 +418,17 @@ impl View {
                 continue;
             }
             tally.shown += 1;
-            if let Some(found) = seen.posts.iter().find(|found| is_near(&found.detection, &own, 0.2)) {
+            if let Some(found) = seen.posts.iter().find(|found| is_near(&found.sight, &own, 0.2)) {
                 tally.found += 1;
-                tally.note(&found.detection, &own);
+                tally.note(&found.sight, &own);
             }
         }
         let is_true =
-            |detection: &Detection| self.posts().any(|post| is_near(detection, &self.to_robot(post), 0.3));
-        tally.wrong += seen.posts.iter().filter(|post| !is_true(&post.detection)).count() as u32;
+            |sight: &GroundObject| self.posts().any(|post| is_near(sight, &self.to_robot(post), 0.3));
+        tally.wrong += seen.posts.iter().filter(|post| !is_true(&post.sight)).count() as u32;
     }
 
-    fn compare_robots(&self, seen: &Seen, camera: &Camera, measures: &mut Measures) {
+    fn compare_robots(&self, seen: &Detections, camera: &Camera, measures: &mut Measures) {
         let tally = &mut measures.robots;
         for robot in &self.scene.robots {
             let own = self.to_robot(robot.position);
@@ -440,17 +440,17 @@ impl View {
                 continue;
             }
             tally.shown += 1;
-            if let Some(found) = seen.robots.iter().find(|found| is_near(&found.detection, &own, 0.2)) {
+            if let Some(found) = seen.robots.iter().find(|found| is_near(&found.sight, &own, 0.2)) {
                 tally.found += 1;
-                tally.note(&found.detection, &own);
+                tally.note(&found.sight, &own);
                 measures.jerseys += 1;
                 measures.wrong_jerseys += u32::from(found.jersey != robot.jersey);
             }
         }
         let things = || self.scene.robots.iter().map(|robot| robot.position).chain(self.posts());
         let is_true =
-            |detection: &Detection| things().any(|thing| is_near(detection, &self.to_robot(thing), 0.35));
-        tally.wrong += seen.robots.iter().filter(|robot| !is_true(&robot.detection)).count() as u32;
+            |sight: &GroundObject| things().any(|thing| is_near(sight, &self.to_robot(thing), 0.35));
+        tally.wrong += seen.robots.iter().filter(|robot| !is_true(&robot.sight)).count() as u32;
     }
 
     /// The points of lines that are in view and in range, in the frame of the robot.
@@ -466,7 +466,7 @@ impl View {
     }
 
     /// Straight parts of lines: which points of lines they cover, and where and how they lie.
-    fn compare_segments(&self, seen: &Seen, camera: &Camera, measures: &mut Measures) {
+    fn compare_segments(&self, seen: &Detections, camera: &Camera, measures: &mut Measures) {
         /// Greatest angle to the line, rad.
         const MOST_ANGLE: f64 = 0.2;
         let near: Vec<[Point2<f64>; 2]> = seen
@@ -508,7 +508,7 @@ impl View {
     }
 
     /// The distance of the points of the border, along their direction.
-    fn compare_border_points(&self, seen: &Seen, tally: &mut Tally) {
+    fn compare_border_points(&self, seen: &Detections, tally: &mut Tally) {
         let field = &self.scene.markings;
         let (length, width) = (field.length / 2.0 + field.border, field.width / 2.0 + field.border);
         for point in seen.border_points.iter().map(|point| point.position) {
@@ -531,7 +531,7 @@ impl View {
         }
     }
 
-    fn compare_lines(&self, seen: &Seen, camera: &Camera, tally: &mut Tally) {
+    fn compare_lines(&self, seen: &Detections, camera: &Camera, tally: &mut Tally) {
         for own in self.shown_line_points(camera) {
             tally.shown += 1;
             let tolerance = 0.06 + 0.03 * own.coords.norm();
@@ -546,7 +546,7 @@ impl View {
         tally.wrong += near.filter(|point| !is_line(&point.position)).count() as u32;
     }
 
-    fn compare_border(&self, seen: &Seen, camera: &Camera, tally: &mut Tally) {
+    fn compare_border(&self, seen: &Detections, camera: &Camera, tally: &mut Tally) {
         let field = &self.scene.markings;
         let (length, width) = (field.length / 2.0 + field.border, field.width / 2.0 + field.border);
         let is_carpet = |x: f64, y: f64| {
@@ -574,8 +574,8 @@ fn within(camera: &Camera, point: Point3<f64>, radius: f64) -> bool {
 }
 
 /// Whether a sighting is of an object: within a part of its distance, and at least 12 cm.
-fn is_near(detection: &Detection, truth: &Point2<f64>, part: f64) -> bool {
-    (detection.position() - truth).norm() < (part * truth.coords.norm()).max(0.12)
+fn is_near(sight: &GroundObject, truth: &Point2<f64>, part: f64) -> bool {
+    (sight.position() - truth).norm() < (part * truth.coords.norm()).max(0.12)
 }
 
 /// A line of the field, in its frame.

@@ -1,4 +1,4 @@
-//! The sightings of an image.
+//! The objects, lines and border that an image shows.
 
 use nalgebra::Point2;
 
@@ -15,20 +15,20 @@ pub struct PixelBox {
     pub bottom: f64,
 }
 
-/// An object on the ground: where it is in the frame of the camera's ground, and in the image.
+/// An object on the ground: its place in the ground frame of the camera, and in the image.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Detection {
+pub struct GroundObject {
     /// Distance along the ground to its middle, m.
     pub distance: f64,
     /// Direction, rad, positive to the left.
     pub bearing: f64,
-    /// Its area in the image.
+    /// Its bounding box in the image.
     pub area: PixelBox,
 }
 
-impl Detection {
-    pub(crate) fn new(point: Point2<f64>, area: PixelBox) -> Detection {
-        Detection { distance: libm::hypot(point.x, point.y), bearing: libm::atan2(point.y, point.x), area }
+impl GroundObject {
+    pub(crate) fn new(point: Point2<f64>, area: PixelBox) -> GroundObject {
+        GroundObject { distance: libm::hypot(point.x, point.y), bearing: libm::atan2(point.y, point.x), area }
     }
 
     /// Its position on the ground, m.
@@ -49,7 +49,7 @@ pub enum GoalPaint {
     White,
 }
 
-/// Which post of its goal one is, as seen from the field facing the goal.
+/// The side of a post in its goal, as seen from the field facing the goal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PostSide {
     /// The left one.
@@ -63,8 +63,8 @@ pub enum PostSide {
 /// A post of a goal, at its foot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GoalPost {
-    /// Its position.
-    pub detection: Detection,
+    /// Where it is.
+    pub sight: GroundObject,
     /// The paint of its goal.
     pub paint: GoalPaint,
     /// Which of the posts it is.
@@ -84,9 +84,9 @@ pub enum Jersey {
 
 /// Another robot, at its foot.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SeenRobot {
-    /// Its position.
-    pub detection: Detection,
+pub struct DetectedRobot {
+    /// Where it is.
+    pub sight: GroundObject,
     /// The colour of its jersey.
     pub jersey: Jersey,
 }
@@ -114,15 +114,15 @@ impl LineSegment {
     }
 }
 
-/// The sightings of an image.
+/// The objects, lines and border that an image shows.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Seen {
+pub struct Detections {
     /// The ball.
-    pub ball: Option<Detection>,
+    pub ball: Option<GroundObject>,
     /// Posts of goals, from left to right.
     pub posts: Vec<GoalPost>,
     /// Other robots, from left to right.
-    pub robots: Vec<SeenRobot>,
+    pub robots: Vec<DetectedRobot>,
     /// Points of lines.
     pub line_points: Vec<GroundPoint>,
     /// Straight parts of lines.
@@ -135,7 +135,7 @@ pub struct Seen {
     pub border_points: Vec<GroundPoint>,
 }
 
-impl Seen {
+impl Detections {
     /// The row at which the field begins in a column; none if the image shows no carpet.
     pub fn border_at(&self, x: f64) -> Option<f64> {
         let first = self.border.first()?;
