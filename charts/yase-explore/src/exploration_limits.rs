@@ -1,8 +1,8 @@
-//! Limits of an exploration, and what it reports to its caller on the way.
+//! Limits of an exploration, and its progress reports.
 
 use std::ops::ControlFlow;
 
-/// How far an exploration goes. A number stands for a limit of states alone.
+/// Limits of an exploration. A number converts to a limit of states only.
 #[derive(Clone, Copy)]
 pub struct ExplorationLimits<'a> {
     /// The largest number of states.
@@ -14,7 +14,7 @@ pub struct ExplorationLimits<'a> {
     pub observe: &'a (dyn Fn(ExplorationProgress) -> ControlFlow<()> + 'a),
 }
 
-/// How far an exploration has come.
+/// Progress of an exploration.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub struct ExplorationProgress {
     /// The number of states found.
@@ -36,13 +36,13 @@ pub enum ExplorationStop {
     Observer,
     /// A step has more alternatives than are tried.
     Alternatives,
-    /// Events are raised faster than they are taken: waiting ones beyond a number were not kept
-    /// ([`QUEUED`]).
+    /// Events are raised faster than they are consumed: more than [`QUEUED`] waiting ones were
+    /// discarded.
     Queues,
 }
 
-/// So many waiting occurrences of one event are distinguished; more are taken for so many.
-/// Otherwise a queue that grows without bound would make each state a new one.
+/// The largest number of waiting occurrences of one event that is distinguished; larger numbers are
+/// treated as this one. Otherwise a queue that grows without bound would make each state new.
 pub const QUEUED: usize = 3;
 
 impl From<usize> for ExplorationLimits<'static> {

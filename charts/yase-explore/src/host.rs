@@ -202,8 +202,8 @@ impl Decisions<'_, '_> {
         value
     }
 
-    /// A region takes over what is so on another blackboard, and what was written there and can be
-    /// seen. One that inherits the newest messages has the newest messages.
+    /// A region inherits the facts of another blackboard, and the writes there that it can see. If
+    /// that blackboard has the newest messages, so has the region.
     fn inherit(&mut self, region: ScopeId, from: ScopeId) {
         self.known.retain(|(board, ..)| *board != region);
         self.facts.retain(|(board, ..)| *board != region);

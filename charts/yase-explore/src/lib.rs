@@ -1,22 +1,22 @@
 //! Exploration of the reachable states of a chart, by the steps of the machine itself.
 //!
 //! [`explore`] runs a chart breadth-first against all behaviour of its environment: events occur,
-//! activities return, timers expire, messages arrive. A script of the host is free to be true or
-//! false, as far as the [`Environment`] allows, and keeps its value for the step; choices that the
-//! chart leaves open are taken each way. States of the machine with equal future behaviour are one.
+//! activities return, timers expire, messages arrive. A script of the host may be true or false, as
+//! far as the [`Environment`] allows, and keeps its value for the step; nondeterministic choices
+//! are explored with each outcome. States of the machine with equal future behaviour are merged.
 //! The result is an [`Exploration`]: its states, the steps between them, the transitions taken, and
 //! a shortest path to each as a [`Trace`] that [`replay`] executes again.
 //!
 //! States are distinguished as far as the chart can: a timer that was never started equals an
-//! expired one for a chart that only tests whether it still has to wait. It is open with which of
-//! them a state was discovered, but no later step depends on that.
+//! expired one for a chart that only tests whether it still has to wait. Either may be the one with
+//! which a state was discovered; no later step depends on it.
 //!
 //! Time is ignored: any timer that is set may expire next, regardless of its delay. The result is
 //! therefore an over-approximation: a chart may do less.
 //!
-//! An exploration is bounded in states, in memory and by its caller ([`ExplorationLimits`]), and
-//! takes more than [`QUEUED`] waiting occurrences of an event for so many. If it is incomplete
-//! ([`Exploration::is_finished`]), further behaviour may exist.
+//! An exploration is bounded in states, in memory and by its caller ([`ExplorationLimits`]). It
+//! counts at most [`QUEUED`] waiting occurrences of an event and treats larger numbers as that
+//! many. If it is incomplete ([`Exploration::is_finished`]), further behaviour may exist.
 //!
 //! ```
 //! use std::sync::Arc;
@@ -29,19 +29,21 @@
 //! let shut = door.add(Statechart::ROOT, Node::new(NodeKind::Basic, "shut"));
 //! let open = door.add(Statechart::ROOT, Node::new(NodeKind::Basic, "open"));
 //! let broken = door.add(Statechart::ROOT, Node::new(NodeKind::Basic, "broken"));
-//! for (source, target, text) in
-//!     [(start, shut, ""), (shut, open, "push / raise(creak)"), (open, shut, "creak"), (open,
-//! broken, "creak")] {
+//! let transitions =
+//!     [(start, shut, ""), (shut, open, "push / raise(creak)"), (open, shut, "creak"), (open, broken, "creak")];
+//! for (source, target, text) in transitions {
 //!     let expression = parse_transition(text).0;
 //!     door.connect(Transition { expression, ..Transition::new(source, target) });
 //! }
 //! let chart = Arc::new(door.compile(&TypeEnvironment::default()).expect("the chart is in order"));
 //!
-//! let found = explore(&chart, &mut Environment { events: vec!["push".into()],
-//! ..Environment::default() }, 1_000); assert!(found.is_finished());
-//! assert!(found.was_entered(open) && !found.was_entered(broken), "the first of the two always
-//! wins"); let way = found.trace_to(found.first(|state| state.is_active(shut)).expect("it is
-//! reached")); assert_eq!(way.to_string(), "start\n");
+//! let mut environment = Environment { events: vec!["push".into()], ..Environment::default() };
+//! let found = explore(&chart, &mut environment, 1_000);
+//! assert!(found.is_finished());
+//! // Of the two transitions that `creak` enables, the first always wins.
+//! assert!(found.was_entered(open) && !found.was_entered(broken));
+//! let state = found.first(|state| state.is_active(shut)).expect("it is reached");
+//! assert_eq!(found.trace_to(state).to_string(), "start\n");
 //! ```
 
 mod constraint_cache;
@@ -72,13 +74,13 @@ pub use search::{advance_and_step, explore};
 pub use trace::{ParseError, StepCause, Trace, TraceStep, replay};
 
 /// Whether a condition may have a value, given the values of others in the same step and the
-/// actions whose effects stand.
+/// actions whose effects still hold.
 pub type ConditionConstraint<'a> = dyn FnMut(ScriptId, bool, &[(ScriptId, bool)]) -> bool + 'a;
 
 /// The effects of actions in the host's language on the data that conditions read.
 ///
-/// An action that was executed is a fact like a condition that holds: until another one changes it,
-/// it stands among the conditions that are known, as true.
+/// An executed action is a fact, like a condition that holds: it is among the known conditions, as
+/// true, until another action changes its effect.
 pub struct WriteEffects<'a> {
     /// Whether an action may change the value of a condition, or what an earlier action has
     /// written.

@@ -94,7 +94,7 @@ struct StateSpaceSearch<'s, 'a> {
     relevance: RelevantState,
     found: Exploration,
     host: ChoosingHost<'s, 'a>,
-    /// The machine that executes the steps.
+    /// The machine that executes steps.
     next: Machine,
     /// The states, by their keys.
     numbers: RowInterner,

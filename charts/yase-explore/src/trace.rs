@@ -143,7 +143,7 @@ fn cause(chart: &CompiledChart, line: &str) -> Result<StepCause, String> {
             None => Err(format!("the chart has no timer `{rest}`: write its blackboard and its name")),
         },
         _ => Err(format!(
-            "`{line}` is no step: write `start`, `event NAME`, `return STATE`, `timer BLACKBOARD NAME` or `messages`"
+            "`{line}` is not a step: write `start`, `event NAME`, `return STATE`, `timer BLACKBOARD NAME` or `messages`"
         )),
     }
 }
@@ -164,7 +164,7 @@ fn detail(chart: &CompiledChart, line: &str, step: &mut TraceStep) -> Result<(),
             None => Err(format!("no guard of the chart reads `{rest}`")),
         },
         _ => Err(format!(
-            "`{line}` is no part of a step: write `true CONDITION`, `false CONDITION` or `choose NUMBER`"
+            "`{line}` is not part of a step: write `true CONDITION`, `false CONDITION` or `choose NUMBER`"
         )),
     }
 }

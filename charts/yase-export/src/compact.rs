@@ -9,18 +9,18 @@ use yase::statechart::{Node, NodeId, NodeKind, Statechart, Transition, Transitio
 /// without composites that only enclose another: the outer one has the content, and the name that
 /// is a word rather than the text of a formula.
 ///
-/// Only for drawings: paths and labels are others, and so is what completes when. Given positions
-/// are kept for states that keep their surroundings.
+/// Only for drawings: paths, labels and completion differ from those of the chart. Given positions
+/// are kept for states that stay in the same composite.
 pub fn compact(chart: &Statechart) -> Statechart {
     CompactChart::of(chart).chart
 }
 
-/// A compact chart with what its parts were.
+/// A compact chart, and the elements of the whole chart that its parts represent.
 pub(crate) struct CompactChart {
     pub(crate) chart: Statechart,
-    /// The nodes of the whole chart, by the node that is left of them.
+    /// The nodes of the whole chart, by the node that represents them in the compact chart.
     pub(crate) nodes: BTreeMap<NodeId, NodeId>,
-    /// The transition of the whole chart, by index of the one that is left of it.
+    /// The transition of the whole chart, by index of the one that represents it.
     pub(crate) transitions: Vec<TransitionId>,
 }
 
@@ -40,7 +40,7 @@ struct Compaction<'a> {
     chart: &'a Statechart,
     nodes: Vec<Node>,
     children: Vec<Vec<NodeId>>,
-    /// The transitions that are left, by their indices in the chart.
+    /// The remaining transitions, by their indices in the chart.
     transitions: BTreeMap<u32, &'a Transition>,
     /// By node: those at it.
     touching: Vec<Vec<u32>>,
@@ -107,7 +107,7 @@ impl<'a> Compaction<'a> {
         self.children[outer.0 as usize] = children;
     }
 
-    /// The composite that is all the content of another, with the transitions that only lead into
+    /// The composite that is the only content of another, with the transitions that only lead into
     /// it and out of it.
     fn only_child(&self, outer: NodeId) -> Option<(NodeId, Vec<u32>)> {
         if self.node(outer).kind != NodeKind::Or {

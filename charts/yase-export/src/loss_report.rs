@@ -19,7 +19,7 @@ impl<'a> LossReport<'a> {
     /// The nodes of the chart do not form a tree; no text can be written.
     pub(crate) fn new(chart: &'a Statechart, tool: &'static str) -> Result<LossReport<'a>, Exported> {
         if !is_tree(chart) {
-            let message = format!("`{}` is no tree: a node is not a child of its parent", chart.name);
+            let message = format!("`{}` is not a tree: a node is not a child of its parent", chart.name);
             let lost = vec![Diagnostic::error("E0708", Span::default(), message)];
             return Err(Exported { text: String::new(), lost });
         }

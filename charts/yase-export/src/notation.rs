@@ -96,7 +96,7 @@ fn actions_text(actions: &[Action]) -> String {
 mod tests {
     use super::*;
 
-    /// 1001 ms are no number of seconds that a floating-point number can represent.
+    /// 1001 ms are not a number of seconds that a floating-point number can represent.
     #[test]
     fn durations_are_exact() {
         let written = |nanoseconds| duration_text(Duration::from_nanos(nanoseconds));

@@ -251,7 +251,7 @@ mod tests {
             Value::Float(value) => Literal::Float(value),
             Value::Enum(value) => Literal::Enum(value),
             Value::Text(value) => Literal::Text(value.into()),
-            value => panic!("{value:?} is no literal"),
+            value => panic!("{value:?} is not a literal"),
         }
     }
 

@@ -275,7 +275,7 @@ pub fn nearest<'a>(wrong: &str, candidates: impl IntoIterator<Item = &'a str>) -
     let limit = (length / 3).max(1);
     candidates
         .into_iter()
-        // Names of other lengths differ by more, which costs nothing to find.
+        // Names of very different lengths differ by more; comparing lengths is cheap.
         .filter(|name| name.chars().count().abs_diff(length) <= limit)
         .map(|name| (strsim::damerau_levenshtein(&lower, &name.to_lowercase()), name))
         .filter(|(distance, _)| *distance <= limit)

@@ -62,32 +62,16 @@
 //! let guard = compiled.expect("every name is known").guard.expect("it has a guard");
 //! assert_eq!(guard.reads(), [TopicId(0)]);
 //!
-//! // A world in which a ball was seen at some distance, or none has been heard of.
-//! struct Seen(Option<f64>);
-//! impl EvalContext for Seen {
-//!     fn field(&self, _: &MessageSource, path: &[FieldId]) -> Value<'_> {
-//!         match (self.0, path) {
-//!             (Some(_), [FieldId(0)]) => Value::Bool(true),
-//!             (Some(distance), [FieldId(1)]) => Value::Float(distance),
-//!             _ => Value::Missing,
-//!         }
-//!     }
-//!     fn message(&self, _: &MessageSource) -> Value<'_> {
-//!         Value::Missing
-//!     }
-//!     fn call(&self, _: FunctionId, _: &[Value<'_>]) -> Result<Value<'_>, CallError> {
-//!         Err(CallError::new("there are no functions"))
-//!     }
-//!     fn timer(&self, _: TimerId) -> TimerState {
-//!         TimerState::Unset
-//!     }
-//!     fn is_active(&self, _: NodeId) -> bool {
-//!         false
-//!     }
-//! }
-//! assert_eq!(guard.evaluate(&Seen(Some(0.5))), Ok(true));
-//! assert_eq!(guard.evaluate(&Seen(Some(0.1))), Ok(false));
-//! assert_eq!(guard.evaluate(&Seen(None)), Ok(false)); // unknown does not fire
+//! // The data of a step: the distance of the ball, or no message about it. struct
+//! Seen(Option<f64>); impl EvalContext for Seen { fn field(&self, _: &MessageSource, path:
+//! &[FieldId]) -> Value<'_> { match (self.0, path) { (Some(_), [FieldId(0)]) => Value::Bool(true),
+//! (Some(distance), [FieldId(1)]) => Value::Float(distance), _ => Value::Missing, } } fn
+//! message(&self, _: &MessageSource) -> Value<'_> { Value::Missing } fn call(&self, _: FunctionId,
+//! _: &[Value<'_>]) -> Result<Value<'_>, CallError> { Err(CallError::new("there are no functions"))
+//! } fn timer(&self, _: TimerId) -> TimerState { TimerState::Unset } fn is_active(&self, _: NodeId)
+//! -> bool { false } } assert_eq!(guard.evaluate(&Seen(Some(0.5))), Ok(true));
+//! assert_eq!(guard.evaluate(&Seen(Some(0.1))), Ok(false)); assert_eq!(guard.evaluate(&Seen(None)),
+//! Ok(false)); // unknown does not fire
 //! ```
 //!
 //! # The language
@@ -121,9 +105,9 @@
 //!
 //! | written | is the latest |
 //! |---|---|
-//! | `M` | of the one topic that has messages of that type |
+//! | `M` | of the only topic that has messages of that type |
 //! | `topic.Kind.M` or `topic` | of that topic, named by its last segment or, in backquotes, by its whole path |
-//! | `publisher.M` | that this publisher made: an activity, or a state's path |
+//! | `publisher.M` | of this publisher: an activity, or the path of a state |
 //! | `host.topic.Kind.M`, `host.publisher.M` | of another host |
 //!
 //! and a field is a message, a dot and the name of the field; nested messages have further dots. A
@@ -151,8 +135,8 @@
 //! |---|---|
 //! | E0101 | invalid character |
 //! | E0102 | a text or a name in backquotes is not closed |
-//! | E0103 | an escape in a text is not one |
-//! | E0104 | there is no name in the backquotes |
+//! | E0103 | unknown escape in a text |
+//! | E0104 | empty name in backquotes |
 //! | E0105 | a number is too large |
 //! | E0106 | missing operand |
 //! | E0107 | missing operator |
@@ -163,7 +147,7 @@
 //! | E0112 | the nesting is too deep |
 //! | E0113 | a member has arguments |
 //! | E0114 | NULL is not compared with a message |
-//! | E0115 | a name is missing |
+//! | E0115 | missing name |
 //! | E0116 | invalid trigger |
 //! | E0117 | the brackets are empty |
 //! | E0118 | invalid action |
@@ -171,7 +155,7 @@
 //! | E0120 | unexpected text after a complete part |
 //! | E0121 | invalid setter |
 //! | E0122 | a single bar or ampersand instead of two |
-//! | E0123 | a script is no text |
+//! | E0123 | the argument of `script` is not a text |
 //! | E0130 | unknown bare name |
 //! | E0131 | ambiguous name |
 //! | E0132 | unknown message or topic |

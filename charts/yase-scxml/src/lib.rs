@@ -37,7 +37,7 @@
 //! # Supported features
 //!
 //! All elements of the recommendation are supported, with the data models `null` and `ecmascript`.
-//! Of ECMAScript there is a subset for charts: values of all types except symbols, dates and
+//! A subset of ECMAScript for charts is supported: values of all types except symbols, dates and
 //! similar ones; operators; `In()`; `String()`; arrays with `length`, `concat`, `join`, `push` and
 //! `slice`, texts with `length`, `concat` and `slice`; functions that are not nested; and in
 //! scripts `var`, assignments, `if` and `return`. Other ECMAScript is refused when the document is
@@ -65,24 +65,24 @@
 //! | E0601 | the text is not XML |
 //! | E0602 | an element is not known |
 //! | E0603 | an attribute is not known |
-//! | E0604 | something is missing |
+//! | E0604 | an attribute or element is missing |
 //! | E0605 | a name is taken |
 //! | E0606 | a target does not exist or lies elsewhere |
 //! | E0607 | targets cannot be entered together |
-//! | E0608 | two things exclude each other |
-//! | E0609 | a value is none of those that are possible |
+//! | E0608 | two attributes exclude each other |
+//! | E0609 | a value is not one of the permitted ones |
 //! | E0610 | ECMAScript that is outside the subset |
 //! | E0611 | not ECMAScript (a warning) |
 //! | E0612 | the data model is not supported |
 //! | E0613 | data in a document of the null data model |
 //! | E0614 | elements nest too deeply |
-//! | E0615 | something stands where it cannot |
+//! | E0615 | an element or text stands where it is not permitted |
 //! | E0616 | the root is not `scxml` |
-//! | E0617 | a name is not one |
+//! | E0617 | an id or the name of a variable is invalid |
 //! | E0618 | an element of another namespace is left out (a warning) |
 //! | E0619 | a `parallel` has no regions (a warning) |
-//! | E0620 | a chart says what SCXML cannot |
-//! | E0621 | a script cannot be had |
+//! | E0620 | SCXML cannot express a part of the chart |
+//! | E0621 | a script cannot be loaded |
 
 mod compiled_text;
 mod content;

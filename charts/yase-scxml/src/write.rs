@@ -453,7 +453,7 @@ impl<'a> DocumentWriter<'a> {
             Ok(block) => self.writer.raw(&block_text(&block)),
             Err(found) => {
                 for diagnostic in found.iter().filter(|diagnostic| diagnostic.is_error()) {
-                    self.refuse(format!("a script is no content of SCXML: {}", diagnostic.message));
+                    self.refuse(format!("a script is not SCXML content: {}", diagnostic.message));
                 }
             }
         }

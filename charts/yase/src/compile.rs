@@ -72,7 +72,7 @@ pub struct CompiledChart {
     /// The data that selection reads of each node.
     pub(crate) selection_table: Box<[SelectionEntry]>,
     pub(crate) errors: ErrorEvents,
-    /// The event that stands for all events that no expression names.
+    /// The event that represents all events that no expression names.
     pub(crate) unnamed: EventId,
     /// The actions of segments that no path contains.
     unreached: Box<[UnreachableSegment]>,

@@ -410,8 +410,8 @@ pub enum StructureRules {
     Strict,
     /// Also the forms of UML. A composite without START has no active child after its default
     /// entry, and counts as complete. An entry point that leads nowhere stands for its composite. A
-    /// composite that is no region may run an activity beside its children, on a blackboard of its
-    /// own, and completes when both have. An internal (local) transition may lead to an exit point
-    /// of its source.
+    /// composite that is not a region may run an activity beside its children, on a blackboard of
+    /// its own, and completes when both have. An internal (local) transition may lead to an exit
+    /// point of its source.
     Uml,
 }

@@ -14,8 +14,8 @@ use yase::statechart::{Node, NodeId, NodeKind, Point, Statechart, Transition, Tr
 const PADDING: f64 = 14.0;
 /// Minimum width at which titles wrap.
 const TITLE_WIDTH: f64 = 200.0;
-/// So many regions from the first on begin a run of neighbours that gives the length of shelves,
-/// and so many are in one.
+/// Limit of the runs of neighbouring regions whose length is tried as that of shelves: of the
+/// regions at which a run may begin, and of the regions in one.
 const MOST_RUNS: usize = 16;
 /// Margin of the drawing.
 pub(crate) const MARGIN: f64 = 16.0;
@@ -159,7 +159,7 @@ fn regions(chart: &Statechart, id: NodeId, layout: &mut DrawingLayout) -> Point 
     turned(size, is_column)
 }
 
-/// The lengths of shelves that are tried: those that a run of neighbours fills.
+/// The candidate lengths of shelves: those of runs of neighbouring regions.
 fn limits(sizes: &[Point]) -> Vec<f64> {
     let longest = sizes.iter().fold(0.0, |longest, size| size.0.max(longest));
     let runs = (0..sizes.len().min(MOST_RUNS)).flat_map(|first| {

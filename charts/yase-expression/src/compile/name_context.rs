@@ -97,8 +97,8 @@ impl<'a> NameContext<'a> {
     /// names can be its values.
     pub(crate) fn variable(&self, path: &Path, expected: Option<&ValueType>) -> CompileResult<TypedTerm> {
         let mut meanings = self.meanings(path, expected);
-        // The name of a constant, say, is not looked for among the messages: that it is none of
-        // them would be answered with the most similar one.
+        // The name of a constant, for example, is not looked up among the messages: the error would
+        // suggest the most similar message.
         let as_message = match path.bare().filter(|name| !self.names_message(name)) {
             Some(name) => Err(name),
             None => Ok(self.variable_of_message(path, expected)),

@@ -104,7 +104,7 @@ impl Cursor<'_> {
     fn refuse_delay(&mut self, written: Span) -> Parsed<()> {
         let text = self.source(written).trim();
         let message =
-            if text.is_empty() { "a delay is missing".into() } else { format!("`{text}` is no delay") };
+            if text.is_empty() { "a delay is missing".into() } else { format!("`{text}` is not a delay") };
         let hint = match text.starts_with(|first: char| first.is_alphabetic() || first == '_') {
             true => "write a number with its unit: `100ms`, `1.5s`; names have no value here",
             false => "write a number with its unit: `100ms`, `1.5s`",
@@ -193,7 +193,7 @@ impl Cursor<'_> {
             let diagnostic = Diagnostic::error(
                 "E0121",
                 self.local(message.place),
-                format!("`{}` is no setter", message.text()),
+                format!("`{}` is not a setter", message.text()),
             );
             return self.refuse(diagnostic.with_hint(hint));
         }
@@ -217,7 +217,7 @@ impl Cursor<'_> {
             return self.refuse(diagnostic);
         }
         self.refuse(
-            Diagnostic::error("E0118", span, format!("`{text}` is no action")).with_hint(hint_for(&text)),
+            Diagnostic::error("E0118", span, format!("`{text}` is not an action")).with_hint(hint_for(&text)),
         )
     }
 }

@@ -59,7 +59,7 @@ impl Cursor<'_> {
         }
         let slip = self.at(single);
         if slip {
-            let message = format!("{} is no operator of conditions", self.found());
+            let message = format!("{} is not an operator of conditions", self.found());
             self.report(
                 Diagnostic::error("E0122", self.span(), message).with_hint(format!("write `{spelling}`")),
             );

@@ -172,7 +172,8 @@ impl<'t> Cursor<'t> {
         self.refuse_closing("E0109", open, "(", ")")
     }
 
-    /// The name that `blue-2.` was probably meant to begin with, if the current token is its dot.
+    /// The name that a path such as `blue-2.` probably starts with, if the current token is its
+    /// dot.
     fn hyphenated_name(&self) -> Option<&'t str> {
         let before = &self.tokens[..self.next.min(self.tokens.len())];
         let [.., first, hyphen, last] = before else { return None };

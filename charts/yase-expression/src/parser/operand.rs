@@ -93,7 +93,7 @@ impl Cursor<'_> {
             't' => Ok('\t'),
             other => {
                 let span = Span::new(backslash, backslash + 1 + other.len_utf8());
-                let message = format!("`\\{other}` is no escape");
+                let message = format!("`\\{other}` is not an escape");
                 self.refuse(
                     Diagnostic::error("E0103", span, message).with_hint(r#"escapes are \" \\ \n \r \t"#),
                 )

@@ -144,7 +144,7 @@ impl Evaluator<'_> {
 
     fn set_member(&mut self, owner: &ScriptValue, name: &str, value: ScriptValue) -> Result<(), EvalError> {
         let ScriptValue::Object(id) = owner else {
-            return Err(EvalError::new(format!("`{name}` is assigned to what is no object")));
+            return Err(EvalError::new(format!("`{name}` is assigned to what is not an object")));
         };
         let heap = &mut self.memory.heap;
         let array = heap.items(owner).map(<[ScriptValue]>::len);

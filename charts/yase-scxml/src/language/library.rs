@@ -127,13 +127,13 @@ fn sign(number: f64) -> f64 {
     }
 }
 
-/// Unlike in C, nothing is a power without a number as exponent.
+/// Unlike in C, the result is NaN if the exponent is NaN, or infinite with a base of 1 or -1.
 fn power(base: f64, exponent: f64) -> f64 {
     let is_undecided = exponent.is_nan() || base.abs() == 1.0 && exponent.is_infinite();
     if is_undecided { f64::NAN } else { libm::pow(base, exponent) }
 }
 
-/// One of two numbers; not a number if one is none.
+/// One of two numbers; NaN if either is NaN.
 fn extreme(a: f64, b: f64, is_first: bool) -> f64 {
     match (a.is_nan() || b.is_nan(), is_first) {
         (true, _) => f64::NAN,

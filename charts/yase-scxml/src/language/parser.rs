@@ -366,7 +366,7 @@ impl<'a> Parser<'a> {
         }
     }
 
-    /// A constant or a call of a function of the library: its objects are no values.
+    /// A constant or a call of a function of the library: its objects are not values.
     fn library(&mut self, object: &str, span: Span) -> Parsed<ScriptExpression> {
         if !self.accept(".") {
             return self.unsupported(span, object);

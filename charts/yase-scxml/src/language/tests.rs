@@ -156,7 +156,7 @@ fn scripts_assign() {
 fn unassignable_values_are_errors() {
     assert_eq!(fault("_event = 1", "1"), "`_event` cannot be assigned");
     assert_eq!(fault("_name.x = 1", "1"), "`_name` cannot be assigned");
-    assert_eq!(fault("var a = 1; a.b.c = 2", "1"), "`c` is assigned to what is no object");
+    assert_eq!(fault("var a = 1; a.b.c = 2", "1"), "`c` is assigned to what is not an object");
     assert_eq!(fault("nowhere.a = 1", "1"), "there is no variable `nowhere`");
     assert_eq!(fault("var a = []; a.x = 1", "1"), "`x` is not a place in an array");
     assert_eq!(fault("", "nothing + 1"), "there is no variable `nothing`");

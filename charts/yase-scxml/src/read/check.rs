@@ -75,7 +75,7 @@ impl DocumentReader<'_> {
     pub(crate) fn scxml_children<'b, 'input>(&mut self, node: Node<'b, 'input>) -> Vec<Node<'b, 'input>> {
         let (known, foreign): (Vec<_>, Vec<_>) = elements(node).partition(|&child| is_scxml(child));
         for child in foreign {
-            let message = format!("`{}` is no element of SCXML and is left out", child.tag_name().name());
+            let message = format!("`{}` is not an element of SCXML and is left out", child.tag_name().name());
             self.report(Diagnostic::warning("E0618", tag(child), message));
         }
         known

@@ -169,7 +169,7 @@ impl DocumentReader<'_> {
             && super::super::time::delay(text).is_none()
         {
             let span = self.value_span(node, "delay");
-            self.error("E0609", span, format!("`{text}` is no delay")).hint =
+            self.error("E0609", span, format!("`{text}` is not a delay")).hint =
                 Some("a delay is a number with its unit, such as `500ms` or `1.5s`".into());
         }
         let send = Send {

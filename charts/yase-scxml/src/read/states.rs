@@ -54,7 +54,7 @@ impl DocumentReader<'_> {
             None | Some("early") => DataBinding::Early,
             Some("late") => DataBinding::Late,
             Some(other) => {
-                let message = format!("`{other}` is no binding: it is `early` or `late`");
+                let message = format!("`{other}` is not a binding: it is `early` or `late`");
                 self.error("E0609", span, message);
                 DataBinding::Early
             }
@@ -92,7 +92,7 @@ impl DocumentReader<'_> {
         };
         let span = self.value_span(element, "id");
         if !is_id(name) {
-            self.error("E0617", span, format!("`{name}` is no id")).hint = Some(
+            self.error("E0617", span, format!("`{name}` is not an id")).hint = Some(
                 "an id is letters, digits, `_`, `-`, `.` and `:`, and does not begin with a digit".into(),
             );
         }
@@ -235,7 +235,7 @@ impl DocumentReader<'_> {
             None | Some("shallow") => NodeKind::ShallowHistory,
             Some("deep") => NodeKind::DeepHistory,
             Some(other) => {
-                let message = format!("`{other}` is no history: it is `shallow` or `deep`");
+                let message = format!("`{other}` is not a history: it is `shallow` or `deep`");
                 let span = self.value_span(element, "type");
                 self.error("E0609", span, message);
                 NodeKind::ShallowHistory
@@ -251,7 +251,7 @@ impl DocumentReader<'_> {
             None | Some("external") => false,
             Some("internal") => true,
             Some(other) => {
-                let message = format!("`{other}` is no type: it is `internal` or `external`");
+                let message = format!("`{other}` is not a type: it is `internal` or `external`");
                 let span = self.value_span(element, "type");
                 self.error("E0609", span, message);
                 false

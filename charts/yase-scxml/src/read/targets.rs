@@ -69,7 +69,7 @@ impl DocumentReader<'_> {
             targets.iter().find(|&&target| self.statechart.node(target).parent != pending.within);
         if let (true, Some(&grandchild)) = (shallow, grandchild) {
             let message = format!(
-                "`{}` is no child of the history's state; the default of a shallow history is meant to be one",
+                "`{}` is not a child of the history's state; the default of a shallow history is meant to be one",
                 self.name(grandchild)
             );
             self.report(Diagnostic::warning("E0606", pending.span, message));

@@ -50,7 +50,7 @@ impl ContentExecutor<'_> {
             None => Duration::ZERO,
             Some(given) => {
                 let text = self.text(given)?;
-                delay(&text).ok_or_else(|| EvalError::new(format!("`{text}` is no delay")))?
+                delay(&text).ok_or_else(|| EvalError::new(format!("`{text}` is not a delay")))?
             }
         };
         let target = address(kind, target)?;
@@ -104,7 +104,7 @@ fn address(kind: Option<String>, target: Option<String>) -> Result<SendTarget, E
     }
     let Some(target) = target else { return Ok(SendTarget::Own) };
     let Some(place) = target.strip_prefix("#_") else {
-        return Err(EvalError::new(format!("`{target}` is no target")));
+        return Err(EvalError::new(format!("`{target}` is not a target")));
     };
     Ok(match place {
         "internal" => SendTarget::Internal,

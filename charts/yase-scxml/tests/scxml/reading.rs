@@ -66,7 +66,7 @@ fn missing_and_superfluous_elements_are_reported() {
     refused("<state id='a'/><final id='a'/>", "E0605 [a] two states have the id `a`");
     refused(
         "<state id='1'/>",
-        "E0617 [1] `1` is no id (an id is letters, digits, `_`, `-`, `.` and `:`, and does not begin with a digit)",
+        "E0617 [1] `1` is not an id (an id is letters, digits, `_`, `-`, `.` and `:`, and does not begin with a digit)",
     );
     refused("<final><state/></final>", "E0615 [state] `state` cannot stand in `final`");
     refused("<state>words</state>", "E0615 [words] text cannot stand in `state`");
@@ -76,7 +76,7 @@ fn missing_and_superfluous_elements_are_reported() {
     );
     refused(
         "<state><onentry><send event='e' delay='5'/></onentry></state>",
-        "E0609 [5] `5` is no delay (a delay is a number with its unit, such as `500ms` or `1.5s`)",
+        "E0609 [5] `5` is not a delay (a delay is a number with its unit, such as `500ms` or `1.5s`)",
     );
     refused(
         "<state><history id='h'/><state/></state>",
@@ -179,7 +179,7 @@ fn errors_inside_invoked_documents_have_their_place() {
 fn foreign_elements_are_skipped_and_reported() {
     refused(
         "<state><b:box xmlns:b='urn:b'/></state>",
-        "E0618 [b:box] `box` is no element of SCXML and is left out",
+        "E0618 [b:box] `box` is not an element of SCXML and is left out",
     );
 }
 

@@ -6,7 +6,7 @@ pub(crate) const PARSING: Table = &[
     ("[a # b]", &["E0101 <#>: `#` has no meaning here (names are letters, digits and `_`)"]),
     ("[a == \"b]", &["E0102 <\">: \" is not closed (close it with \")"]),
     ("/ publish.`a", &["E0102 <`>: ` is not closed (close it with `)"]),
-    ("[a == \"\\q\"]", &["E0103 <\\q>: `\\q` is no escape (escapes are \\\" \\\\ \\n \\r \\t)"]),
+    ("[a == \"\\q\"]", &["E0103 <\\q>: `\\q` is not an escape (escapes are \\\" \\\\ \\n \\r \\t)"]),
     (
         "[`` == 1]",
         &["E0104 <``>: there is no name in the backquotes (a topic's path is written `` `soccer.ball` ``)"],
@@ -158,14 +158,14 @@ pub(crate) const PARSING: Table = &[
         "[a]/;x",
         &[
             "E0118 <;>: an action is expected, not `;` (an action is `Message.field = value`, `publish.Message`, `StartTimeout(v, 100ms)`, `raise(event)`, `process_messages` or `publish_all`)",
-            "E0118 <x>: `x` is no action (an action is `Message.field = value`, `publish.Message`, `StartTimeout(v, 100ms)`, `raise(event)`, `process_messages` or `publish_all`)",
+            "E0118 <x>: `x` is not an action (an action is `Message.field = value`, `publish.Message`, `StartTimeout(v, 100ms)`, `raise(event)`, `process_messages` or `publish_all`)",
         ],
     ),
     ("[a]/x == 1", &["E0118 <==>: `==` compares; an action assigns (write `=`)"]),
     (
         "[a]/foo",
         &[
-            "E0118 <foo>: `foo` is no action (an action is `Message.field = value`, `publish.Message`, `StartTimeout(v, 100ms)`, `raise(event)`, `process_messages` or `publish_all`)",
+            "E0118 <foo>: `foo` is not an action (an action is `Message.field = value`, `publish.Message`, `StartTimeout(v, 100ms)`, `raise(event)`, `process_messages` or `publish_all`)",
         ],
     ),
     (
@@ -183,12 +183,12 @@ pub(crate) const PARSING: Table = &[
     ("/StartTimeout(v)", &["E0119 <)>: a delay is expected, not `)` (write `StartTimeout(v, 100ms)`)"]),
     (
         "/StartTimeout(v, 100)",
-        &["E0119 <100>: `100` is no delay (write a number with its unit: `100ms`, `1.5s`)"],
+        &["E0119 <100>: `100` is not a delay (write a number with its unit: `100ms`, `1.5s`)"],
     ),
     (
         "/StartTimeout(v, patience)",
         &[
-            "E0119 <patience>: `patience` is no delay (write a number with its unit: `100ms`, `1.5s`; names have no value here)",
+            "E0119 <patience>: `patience` is not a delay (write a number with its unit: `100ms`, `1.5s`; names have no value here)",
         ],
     ),
     ("/StartTimeout(v, )", &["E0119 <>: a delay is missing (write a number with its unit: `100ms`, `1.5s`)"]),
@@ -209,13 +209,13 @@ pub(crate) const PARSING: Table = &[
     (
         "/A.get_x(3)",
         &[
-            "E0121 <A.get_x>: `A.get_x` is no setter (write `Message.set_field(value)` or `Message.field = value`)",
+            "E0121 <A.get_x>: `A.get_x` is not a setter (write `Message.set_field(value)` or `Message.field = value`)",
         ],
     ),
     (
         "/A.set_(3)",
         &[
-            "E0121 <A.set_>: `A.set_` is no setter (write `Message.set_field(value)` or `Message.field = value`)",
+            "E0121 <A.set_>: `A.set_` is not a setter (write `Message.set_field(value)` or `Message.field = value`)",
         ],
     ),
     (
@@ -226,11 +226,11 @@ pub(crate) const PARSING: Table = &[
     ),
     (
         "/publish.A.x(3)",
-        &["E0121 <A.x>: `A.x` is no setter (write `Message.set_field(value)` or `Message.field = value`)"],
+        &["E0121 <A.x>: `A.x` is not a setter (write `Message.set_field(value)` or `Message.field = value`)"],
     ),
-    ("[a | b]", &["E0122 <|>: `|` is no operator of conditions (write `||`)"]),
+    ("[a | b]", &["E0122 <|>: `|` is not an operator of conditions (write `||`)"]),
     ("[script(x)]", &["E0123 <x>: a text is expected, not `x` (write `script(\"text\")`)"]),
-    ("[a & b]", &["E0122 <&>: `&` is no operator of conditions (write `&&`)"]),
+    ("[a & b]", &["E0122 <&>: `&` is not an operator of conditions (write `&&`)"]),
     ("/ x.y = #", &["E0101 <#>: `#` has no meaning here (names are letters, digits and `_`)"]),
     ("#", &["E0101 <#>: `#` has no meaning here (names are letters, digits and `_`)"]),
     (
@@ -255,7 +255,7 @@ pub(crate) const PARSING: Table = &[
     (
         "/publish",
         &[
-            "E0118 <publish>: `publish` is no action (an action is `Message.field = value`, `publish.Message`, `StartTimeout(v, 100ms)`, `raise(event)`, `process_messages` or `publish_all`)",
+            "E0118 <publish>: `publish` is not an action (an action is `Message.field = value`, `publish.Message`, `StartTimeout(v, 100ms)`, `raise(event)`, `process_messages` or `publish_all`)",
         ],
     ),
 ];

@@ -223,7 +223,7 @@ fn pending_transitions_that_do_not_interrupt() {
 fn notes_on_what_is_not_there() {
     assert_eq!(
         found(|snapshot| snapshot.waiting_starts.push("c/both/one/START".into())),
-        "waiting_starts: `c/both/one/START` is no active START"
+        "waiting_starts: `c/both/one/START` is not an active START"
     );
     assert_eq!(
         found(|snapshot| snapshot.written.push("c/both/one/A".into())),
@@ -251,7 +251,7 @@ fn regions_to_be_entered_that_are_none_or_active() {
         }),
         "to_inherit[1]: `c/both/two` is there twice\n\
          to_enter: `c/both/one` is active already\n\
-         to_enter: `c/off` is no region"
+         to_enter: `c/off` is not a region"
     );
 }
 

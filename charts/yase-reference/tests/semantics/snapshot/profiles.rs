@@ -82,7 +82,7 @@ fn a_history_remembers_what_was_active_together_inside_its_composite() {
     for nodes in [&[][..], &["c/off"], &["c/w/b"], &["c/w/b/x"], &["c/w/a", "c/w/b", "c/w/b/x"], &["c/w"]] {
         assert_eq!(wrong("c/w/depth", nodes), deep, "{nodes:?}");
     }
-    assert_eq!(wrong("c/w/a", &[]), "history[2].history: `c/w/a` is no HISTORY");
+    assert_eq!(wrong("c/w/a", &[]), "history[2].history: `c/w/a` is not a HISTORY");
     assert_eq!(wrong("c/w/past", &["c/w/z"]), "history[0].nodes[0]: the chart has no node `c/w/z`");
 }
 

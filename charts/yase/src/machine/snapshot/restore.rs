@@ -162,7 +162,7 @@ impl<'a> SnapshotRestorer<'a> {
             let Some(place) = self.place(&format!("{field}.history"), &record.history) else { continue };
             let histories = &self.chart.histories;
             let Some(number) = histories.iter().position(|history| history.place == place) else {
-                let text = format!("`{}` is no HISTORY", record.history);
+                let text = format!("`{}` is not a HISTORY", record.history);
                 self.report_issue(RestoreIssueKind::Unknown, format!("{field}.history"), text);
                 continue;
             };

@@ -182,7 +182,7 @@ impl SnapshotRestorer<'_> {
             let place = self.run.regions_to_enter.regions[index];
             let path = self.path(place);
             if !self.chart.regions.iter().any(|region| region.root == place) {
-                self.report_contradiction("to_enter", format!("`{path}` is no region"));
+                self.report_contradiction("to_enter", format!("`{path}` is not a region"));
             } else if self.is_active(place) {
                 self.report_contradiction("to_enter", format!("`{path}` is active already"));
             } else if !self.is_around_active(place) {
@@ -208,7 +208,7 @@ impl SnapshotRestorer<'_> {
         for place in self.chart.layout.places() {
             let waits = self.run.waiting_starts.contains(place.index());
             if waits && !(self.is_active(place) && self.kind(place) == NodeKind::Start) {
-                let text = format!("`{}` is no active START", self.path(place));
+                let text = format!("`{}` is not an active START", self.path(place));
                 self.report_contradiction("waiting_starts", text);
             }
         }

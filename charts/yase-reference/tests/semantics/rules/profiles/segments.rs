@@ -285,7 +285,7 @@ fn forms_that_only_uml_allows_are_errors_elsewhere() {
         assert_eq!(codes(chart), [vec![code], vec![]], "{chart}");
     }
     let region = "START\n& P\n  one | run\n    START\n    A\n  two\nc/START -> P\none/START -> A\n";
-    assert_eq!(codes(region), [vec!["E0503"], vec!["E0503"]], "a region is no state of UML");
+    assert_eq!(codes(region), [vec!["E0503"], vec!["E0503"]], "a region is not a state of UML");
 }
 
 #[test]
