@@ -140,7 +140,7 @@ fn with_absolute_paths(words: &RustBindings) -> RustBindings {
     words
 }
 
-/// Something that Rust has no word for.
+/// A construct that cannot be expressed in Rust.
 fn refusal(code: &'static str, message: impl Into<String>, hint: &str) -> Diagnostic {
     Diagnostic::error(code, Span::default(), message).with_hint(hint)
 }

@@ -16,7 +16,7 @@ use crate::xmi::{self, XmiPaths, elements};
 /// Returns how many nodes have a place.
 ///
 /// # Errors
-/// One of the texts is no XML (E0246), or the diagram says nothing about nodes of the model
+/// One of the texts is not XML (E0246), or the diagram says nothing about nodes of the model
 /// (E0819).
 pub fn apply_diagram(chart: &mut Iac, model: &str, diagram: &str) -> Result<usize, Diagnostic> {
     let (model, diagram) = (xmi::parse(model)?, xmi::parse(diagram)?);

@@ -2,9 +2,9 @@
 //! text.
 //!
 //! States are matched by position and name, so a label that changed because a state was inserted
-//! before it is no difference. A composite whose formula was edited has another name but is matched
-//! with the old one; a state that disappeared in one place and appeared in another has moved.
-//! Transitions are the same if they connect the same states.
+//! before it is not a difference. A composite whose formula was edited has another name but is
+//! matched with the old one; a state that disappeared in one place and appeared in another has
+//! moved. Transitions are the same if they connect the same states.
 //!
 //! ```
 //! let chart = |text: &str| aseme_models::statechart_of(&yase::Source::new("r.srm", text)).0;
@@ -220,7 +220,8 @@ impl ChartComparison<'_> {
     fn compare_state(&mut self, new: NodeId, old: Option<NodeId>) {
         let said = |chart: &Statechart, id: NodeId| {
             let mut said = refinements(chart.node(id));
-            // the default activity follows the name, so that its change is no separate difference
+            // the default activity follows the name, so that its change is not a separate
+            // difference
             said.retain(|line| !line.starts_with("activity = "));
             said.extend(own_activity(chart, id));
             said

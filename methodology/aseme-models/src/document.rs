@@ -103,7 +103,7 @@ pub(crate) struct KeyValue<'a> {
     pub(crate) block: Option<&'a [Line]>,
 }
 
-/// The settings of lines; a line that is no setting is returned as the error.
+/// The settings of lines; a line that is not a setting is returned as the error.
 pub(crate) fn settings(lines: &[Line]) -> Vec<Result<KeyValue<'_>, &Line>> {
     let mut settings = Vec::new();
     let mut rest = lines;

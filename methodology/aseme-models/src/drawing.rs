@@ -72,7 +72,7 @@ fn of_chart(mut model: Iac) -> (Statechart, Vec<Diagnostic>) {
         }
     }
     let (mut chart, _) = model.to_statechart();
-    // transitions without ends are no part of the chart
+    // transitions without ends are not part of the chart
     let exists = |node: usize| node < model.nodes.len();
     let drawn: Vec<usize> = (0..model.transitions.len())
         .filter(|&index| exists(model.transitions[index].source) && exists(model.transitions[index].target))

@@ -1,4 +1,4 @@
-//! Edits of models as edits of their text: what is not concerned keeps its bytes and comments.
+//! Edits of models as edits of their text: unaffected parts keep their bytes and comments.
 //!
 //! [`edits`] turns a [`ModelEdit`], such as another guard of a transition, into a few replacements
 //! of spans of the text that a person wrote. Undo is therefore that of any text editor, and a file

@@ -89,8 +89,8 @@ impl Abstraction {
         surroundings
     }
 
-    /// Whether values of conditions are possible together, some more conditions standing behind
-    /// those of the chart.
+    /// Whether values of conditions are possible together; additional conditions follow those of
+    /// the chart.
     pub(crate) fn satisfiable<'a>(
         &'a self,
         more: &[&'a Expression],
@@ -151,7 +151,7 @@ impl Abstraction {
         }
     }
 
-    /// Whether conditions can have such values at one moment.
+    /// Whether conditions can have these values at the same time.
     pub(crate) fn can_be(&self, decided: &[(ScriptId, bool)]) -> crate::logic::Satisfiability {
         let claims = decided.iter().filter_map(|&(script, value)| self.claim(script, value, &[]));
         GuardSolver::new(&self.constants).together(&claims.collect::<Vec<_>>())

@@ -143,7 +143,7 @@ pub const CHECKS: &[Check] = {
             Warning,
             "a transition that can only be taken while an activity that it leaves runs",
         ),
-        of("M23", Structure, Error, "weights that are no shares, or contradict priorities"),
+        of("M23", Structure, Error, "weights that are not shares, or contradict priorities"),
         of("M24", Exploration, Error, "a chart that does other than its formulas say"),
         of("M25", Structure, Information, "what other engines read in another way"),
         of("M26", Exploration, Information, "how large the chart is"),

@@ -31,23 +31,23 @@ pub struct CheckSettings {
     pub recorded: Vec<RecordedCoverage>,
 }
 
-/// How far a check has come.
+/// Progress of a check.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[non_exhaustive]
 pub enum CheckProgress {
-    /// Nodes and transitions are checked: how many have been, of how many.
+    /// Nodes and transitions are being checked.
     Checking {
-        /// The number that has been checked.
+        /// The number checked so far.
         done: usize,
-        /// The number of all.
+        /// The total number.
         of: usize,
     },
     /// States are explored.
     Exploring(ExplorationProgress),
 }
 
-/// Follows the progress of a check: called again and again with how far it has come; it may stop
-/// it, which then gives what is known. A check reads no clock: its caller does.
+/// Observes the progress of a check: called repeatedly with the progress, it may stop the check,
+/// which then returns its partial result. A check reads no clock; its caller does.
 #[derive(Clone)]
 pub struct ProgressObserver {
     checking: Arc<dyn Fn(CheckProgress) -> ControlFlow<()> + Send + Sync>,
@@ -74,7 +74,7 @@ impl ProgressObserver {
 }
 
 impl Default for ProgressObserver {
-    /// One that never stops a check.
+    /// An observer that never stops a check.
     fn default() -> ProgressObserver {
         ProgressObserver::new(|_| ControlFlow::Continue(()))
     }

@@ -121,8 +121,8 @@ impl<'a> GuardSolver<'a> {
         SatisfiabilitySearch::new(ALTERNATIVES).answer(self.all(claims))
     }
 
-    /// Values with which all of this may be so, terms that cannot be judged having any value; or
-    /// none, and whether there surely are none.
+    /// Values with which all of this may hold, where undecidable terms may have any value; or none,
+    /// and whether it is certain that there are none.
     pub(crate) fn candidate(&self, claims: &[Claim<'_>]) -> (Option<GuardModel>, bool) {
         SatisfiabilitySearch::new(MANY_ALTERNATIVES).candidate(&self.all(claims))
     }

@@ -245,7 +245,8 @@ impl BoundaryTransitions<'_> {
         for way in &self.out {
             let Some(guard) = guard(way) else { continue };
             if !outcomes.iter().any(|outcome| logic.implies(&guard, outcome)) {
-                let message = format!("`{name}` is left when `{guard}`, which is no outcome of the protocol");
+                let message =
+                    format!("`{name}` is left when `{guard}`, which is not an outcome of the protocol");
                 found.report("E0865", way.place.0, message, "make it an outcome, or remove the exit");
             }
         }

@@ -1,11 +1,12 @@
 //! Replay of a run that an exploration has found, with values for all that it leaves open.
 //!
-//! An exploration decides the conditions of a chart step by step: that the data of a run can be so
-//! throughout is not known yet. A [`RunReplay`] executes the run once more on the machine, and
+//! An exploration decides the conditions of a chart step by step; whether one set of data satisfies
+//! the whole run is still open. A [`RunReplay`] executes the run once more on the machine, and
 //! keeps for each condition what it reads there: which delivery of a message, or which assignment.
-//! Then it looks for values with which all conditions come out as in the run, and evaluates them.
+//! Then it searches for values with which all conditions evaluate as in the run, and checks them by
+//! evaluation.
 //!
-//! A run that is not played may still be one: the reason says what is missing.
+//! A run that cannot be replayed may still be possible: the reason says what is missing.
 
 mod blackboards;
 mod evaluation;
@@ -49,7 +50,7 @@ impl<'a> RunReplay<'a> {
     /// Executes the next step.
     ///
     /// # Errors
-    /// Why the machine does not make this step.
+    /// The reason why the machine does not make this step.
     pub(crate) fn step(&mut self, step: &TraceStep) -> Result<(), String> {
         let event = match &step.cause {
             StepCause::Event(name) => Some(name.as_str()),
@@ -64,12 +65,12 @@ impl<'a> RunReplay<'a> {
         }
     }
 
-    /// A message arrives before the next step, of which something is known.
+    /// Lets a message with partially known content arrive before the next step.
     pub(crate) fn receive(&mut self, message: &Path, known: &[Expression]) {
         self.host.receive(message, known);
     }
 
-    /// Something is known of messages before the first step.
+    /// Adds knowledge about messages before the first step.
     pub(crate) fn assume(&mut self, known: &[Expression]) {
         self.host.assume(known);
     }
@@ -84,7 +85,7 @@ impl<'a> RunReplay<'a> {
         self.host.claim_of_root(condition, holds);
     }
 
-    /// Whether there are values with which the run so far can be.
+    /// Whether there are values with which the run so far is possible.
     ///
     /// # Errors
     /// Why none are known.
@@ -119,7 +120,7 @@ impl<'a> RunReplay<'a> {
         }
     }
 
-    /// The first condition that does not go with those before it.
+    /// The first condition that contradicts those before it.
     fn contradiction(&self, claims: &[RunClaim]) -> Unconfirmed {
         let logic = GuardSolver::new(&self.abstraction.constants);
         let is_possible = |count: usize| {

@@ -108,7 +108,7 @@ pub fn refine_states(chart: &mut Statechart, entries: &[StateEntry]) -> Vec<Unma
     unmatched
 }
 
-/// So many names are compared for hints about entries that fit nothing.
+/// The number of names that are compared for hints about unmatched entries.
 const COMPARISONS: usize = 1_000_000;
 
 /// A chart in which entries are looked up.

@@ -105,7 +105,7 @@ fn decoded(word: &str) -> Option<String> {
     char::from_u32(number).map(String::from)
 }
 
-/// The keywords of all editions, which are no identifiers.
+/// The keywords of all editions, which are not identifiers.
 const KEYWORDS: [&str; 54] = [
     "Self", "abstract", "as", "async", "await", "become", "box", "break", "const", "continue", "crate", "do",
     "dyn", "else", "enum", "extern", "false", "final", "fn", "for", "gen", "if", "impl", "in", "let", "loop",

@@ -373,7 +373,7 @@ fn lines<'a>(document: &'a ItemDocument, word: &'a str) -> impl Iterator<Item = 
 fn known_kind(kind: &str) -> Result<&'static str, EditRefusal> {
     KINDS.into_iter().map(kind_word).find(|known| *known == kind).ok_or_else(|| {
         let kinds: Vec<&str> = KINDS.into_iter().map(kind_word).collect();
-        EditRefusal::new(format!("`{kind}` is no kind of node"))
+        EditRefusal::new(format!("`{kind}` is not a kind of node"))
             .with_hint(format!("kinds are {}", kinds.join(", ")))
     })
 }

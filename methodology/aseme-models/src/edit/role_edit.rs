@@ -180,7 +180,7 @@ impl<'a> RoleText<'a> {
             return Err(EditRefusal::new(message).with_hint("edit the formula, or rename the states in it"));
         }
         if !text::is_name(name) || ["START", "END", "CONDITION"].contains(&name) {
-            let message = format!("`{name}` is no name of a state");
+            let message = format!("`{name}` is not a name of a state");
             return Err(
                 EditRefusal::new(message).with_hint("a name has ASCII letters, digits and underscores")
             );

@@ -145,7 +145,7 @@ impl Reader {
     }
 
     fn no_setting(&mut self, word: &SpannedText) {
-        let message = format!("`{}` is no setting", word.text);
+        let message = format!("`{}` is not a setting", word.text);
         self.report(Diagnostic::error("E0265", word.span, message).with_hint("write `key = value`"));
     }
 
@@ -212,7 +212,7 @@ impl Reader {
         let kind = content.text[split..].to_owned();
         let is_kind = !kind.is_empty() && kind.bytes().all(|byte| byte.is_ascii_uppercase() || byte == b'_');
         if !is_kind {
-            let message = format!("`{}` is no state", content.text);
+            let message = format!("`{}` is not a state", content.text);
             let hint =
                 "write a name and a type, such as `Scan BASIC`, or the type alone for a node without a name";
             self.report(Diagnostic::error("E0270", content.span, message).with_hint(hint));
@@ -351,7 +351,7 @@ impl Reader {
         match found.as_slice() {
             [one] => return Some(*one),
             [] => {
-                let message = format!("`{}` is no state", path.text);
+                let message = format!("`{}` is not a state", path.text);
                 let finding = Diagnostic::error("E0271", path.span, message).with_suggestion(
                     &self.suggestions,
                     &path.text,
@@ -388,7 +388,7 @@ impl Reader {
             }
         }
         for word in wrong {
-            let message = format!("`{word}` is no modifier of a transition");
+            let message = format!("`{word}` is not a modifier of a transition");
             let hint = "a target may be followed by `!priority`, `%weight`, `interrupts` and `internal`";
             self.report(Diagnostic::error("E0242", modifiers.span, message).with_hint(hint));
         }

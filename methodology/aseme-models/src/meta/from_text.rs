@@ -111,7 +111,7 @@ impl Reader<'_> {
             match setting {
                 Ok(setting) => self.setting(class, &setting, &mut object, &mut said),
                 Err(line) => {
-                    let message = format!("`{}` is no setting", line.content.text);
+                    let message = format!("`{}` is not a setting", line.content.text);
                     let hint = format!(
                         "write `key = value`; keys are {}",
                         keys(class).collect::<Vec<_>>().join(", ")

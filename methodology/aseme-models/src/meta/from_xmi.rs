@@ -123,7 +123,7 @@ impl Reader<'_> {
             Some((_, feature, choice)) => object.values[*feature] = FeatureValue::Choice(*choice),
             None if name == class.word => {}
             None => {
-                let message = format!("`{name}` is no kind of {}", class.word);
+                let message = format!("`{name}` is not a kind of {}", class.word);
                 let names = class.subclasses.iter().map(|(name, ..)| *name);
                 let found = Diagnostic::error("E0805", xmi::value_span(&attribute), message);
                 self.report(found.with_nearest(name, names));

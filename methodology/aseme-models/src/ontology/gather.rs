@@ -39,7 +39,7 @@ impl<'a> Gatherer<'a> {
             Some((topic, kind, message)) => self.message(message, Some((topic, kind)), variable.place.0),
             None => {
                 let (name, kind) = (&variable.name, &variable.kind);
-                let text = format!("the variable `{name}` has the type `{kind}`, which is no message");
+                let text = format!("the variable `{name}` has the type `{kind}`, which is not a message");
                 let hint =
                     "message types are topic.State.Message, topic.Signal.Message or topic.Data.Message";
                 self.found.push(Diagnostic::warning("E0880", variable.place.0, text).with_hint(hint));

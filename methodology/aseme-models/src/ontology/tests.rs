@@ -55,7 +55,7 @@ fn topics_come_from_paths_and_from_variables() {
     let variables = [variable("gsm", "worldstate.State.GameState"), variable("ok", "bool")];
     let (ontology, found) =
         gathered("[vision.Data.Ball.place.x > 1 && worldstate.State.GameState.over]", &variables);
-    assert_eq!(found, ["the variable `ok` has the type `bool`, which is no message"]);
+    assert_eq!(found, ["the variable `ok` has the type `bool`, which is not a message"]);
     assert_eq!(
         ontology.to_proto("team"),
         "// The messages of statecharts: derived from expressions, to be completed by hand.\nsyntax = \"proto3\";\n\npackage team;\n\n\

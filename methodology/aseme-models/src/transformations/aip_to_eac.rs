@@ -102,7 +102,7 @@ fn exits(eac: &mut Iac, participant: &Participant) -> Vec<Diagnostic> {
             let (inner, closed) = group.split_once(']').map_or((group, false), |(inner, _)| (inner, true));
             let findings = parse_transition(&format!("[{inner}]")).1;
             if !closed || findings.iter().any(Diagnostic::is_error) {
-                let message = format!("`[{inner}` of `{}` is no condition", participant.name);
+                let message = format!("`[{inner}` of `{}` is not a condition", participant.name);
                 let hint = "write all conditions in brackets, as on a transition, or all in prose";
                 found.push(Diagnostic::error("E0838", participant.place.0, message).with_hint(hint));
             }

@@ -184,7 +184,7 @@ fn a_state_is_renamed_wherever_it_is_named() {
     let text = "Liveness:\na = b . c\nTransitions:\nb -> c : [In(a/b) && c.b]\n";
     let after = edited(text, &ModelEdit::RenameState { state: state(text, "b"), name: "d".into() });
     assert_eq!(after, "Liveness:\na = d . c\nTransitions:\nd -> c : [In(a/d) && c.b]\n");
-    for (name, why) in [("kickBall", "already"), ("a b", "no name"), ("END", "no name")] {
+    for (name, why) in [("kickBall", "already"), ("a b", "not a name"), ("END", "not a name")] {
         let edit = ModelEdit::RenameState { state: state(EXTENDED, "AssessAttack"), name: name.into() };
         assert!(refused(EXTENDED, &edit).contains(why), "{name}");
     }
@@ -248,7 +248,7 @@ fn nodes_of_all_kinds_are_added_to_a_chart_and_removed() {
         assert_eq!(removed, CHART, "{kind}");
     }
     let edit = ModelEdit::AddState { parent, kind: "STATE".into(), name: "x".into() };
-    assert!(refused(CHART, &edit).contains("no kind of node"));
+    assert!(refused(CHART, &edit).contains("not a kind of node"));
 }
 
 #[test]

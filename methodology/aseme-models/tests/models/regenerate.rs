@@ -273,7 +273,7 @@ fn an_invalid_layout_is_reported() {
         ("a -> END : via = 1 2 3", "E0245", "`1 2 3` is not a value for `via`"),
         ("a : via = 1 2", "E0244", "the layout of a state has no `via`"),
         ("a -> END : at = 1 2", "E0244", "the layout of a transition has no `at`"),
-        ("a -> END !2 : via = 1 2", "E0242", "`!2` is no modifier of a transition"),
+        ("a -> END !2 : via = 1 2", "E0242", "`!2` is not a modifier of a transition"),
         ("a", "E0243", "an entry has a path, `:` and settings"),
         ("b : at = 1 2", "E0250", "names no state of the chart"),
         ("a -> END also : via = 1 2", "E0250", "names no transition of the chart"),
@@ -382,7 +382,7 @@ B : entry =  Say.text = \"come   back\"
     assert_eq!(entries_of_role(&file(role))[1].1, "A -> B : [Say.text == \"go  left\"]");
 }
 
-/// 1001 ms are no number of seconds that a floating-point number can represent.
+/// 1001 ms are not a number of seconds that a floating-point number can represent.
 #[test]
 fn durations_are_carried_exactly() {
     for written in ["1001ms", "1.5ms", "0.000001ms", "86400000ms"] {

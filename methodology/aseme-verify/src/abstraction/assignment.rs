@@ -25,13 +25,13 @@ impl Assignment {
         })
     }
 
-    /// Whether it may change what a condition says. A message that had not arrived exists from the
-    /// first assignment on, with all its fields.
+    /// Whether it may change the value of a condition. A message that had not arrived exists from
+    /// the first assignment on, with all its fields.
     pub(crate) fn may_change(&self, condition: &Expression) -> bool {
         condition.find_map(&mut |part| reads(part, &self.target).then_some(())).is_some()
     }
 
-    /// Whether it may change what another assignment has written.
+    /// Whether it may overwrite another assignment.
     pub(crate) fn may_overwrite(&self, other: &Assignment) -> bool {
         match same_message(&self.target, &other.target) {
             true => self.target.segments.last() == other.target.segments.last(),

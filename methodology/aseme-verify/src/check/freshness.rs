@@ -36,7 +36,7 @@ struct NodeArrival<'a> {
 /// The ways in which a node is reached, by the state whose activity ended.
 type NodeArrivals<'a> = BTreeMap<NodeId, NodeArrival<'a>>;
 
-/// Guards that are read before what they read is derived.
+/// Guards that are evaluated before the messages that they read are derived.
 pub(crate) fn stale(subject: &CheckedModel, world: &ProgramSymbols) -> Vec<Diagnostic> {
     let Ok(chart) = subject.chart.compile_with(&world.vocabulary, subject.semantics) else {
         return Vec::new();
@@ -57,7 +57,7 @@ pub(crate) fn stale(subject: &CheckedModel, world: &ProgramSymbols) -> Vec<Diagn
         let ways = &subject.outgoing[source.0 as usize];
         let target = |id: TransitionId| subject.chart.transition(id).target;
         if ways.iter().all(|&way| target(way) == target(id)) {
-            // Nothing is decided.
+            // No guard is decided here.
             continue;
         }
         for (arrival, path) in

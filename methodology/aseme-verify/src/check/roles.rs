@@ -29,7 +29,7 @@ pub(crate) fn check(model: &Model, world: Option<&ProgramSymbols>) -> Vec<Diagno
     }
 }
 
-/// E0838: rules and outcomes that are no conditions.
+/// E0838: rules and outcomes that are not conditions.
 fn unreadable_conditions(protocols: &Aip) -> impl Iterator<Item = Diagnostic> {
     let (_, found) = aip_to_eac(protocols);
     found.into_iter().filter(|found| found.code == "E0838")

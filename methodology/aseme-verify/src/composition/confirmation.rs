@@ -1,4 +1,4 @@
-//! Confirms a way to a deadlock: each robot makes its steps on the machine.
+//! Confirms a path to a deadlock: executes the steps of each robot on the machine.
 
 use yase::expression::Path;
 use yase_explore::TraceStep;
@@ -10,11 +10,11 @@ use crate::check_settings::CheckSettings;
 use crate::conformance::graph::LabelledEdge;
 use crate::run_replay::{MessageSources, RunReplay};
 
-/// Whether the robots can make the steps on the way to a state, with values for all that they read:
-/// first as if nothing else published what they assign, then with messages of others.
+/// Whether the robots can execute the path to a state, with values for everything that they read:
+/// first as if only they published what they assign, then with messages of other publishers.
 ///
 /// # Errors
-/// Why that is not known.
+/// The reason why that is unknown.
 pub(crate) fn confirm(
     product: &GlobalProduct<'_>,
     state: usize,
@@ -34,7 +34,7 @@ pub(crate) fn confirm(
     })
 }
 
-/// The steps of one robot on the way to a state.
+/// The steps of one robot on the path to a state.
 fn replayed(
     product: &GlobalProduct<'_>,
     state: usize,
@@ -87,7 +87,7 @@ fn routes_to<'p>(
     product.passages.iter().enumerate().filter(move |(_, route)| route.to == robot)
 }
 
-/// Of two messages under one name it is not known which came last.
+/// The order of two messages with one name is unknown.
 fn is_only_route(product: &GlobalProduct<'_>, robot: usize, number: usize) -> bool {
     let received = &product.passages[number].received_messages;
     let others = routes_to(product, robot).filter(|(other, _)| *other != number);
@@ -100,10 +100,10 @@ fn prefixes(robot: &ComposedRobot, route: &MessageRoute) -> impl Iterator<Item =
     received.map(|&it| robot.received[it].called.prefix.clone()).collect::<Vec<_>>().into_iter()
 }
 
-/// A message that arrives, and what is known of it.
+/// An arriving message, with the known part of its content.
 type ArrivingMessage = (Path, Vec<yase::expression::Expression>);
 
-/// A robot on its way.
+/// A robot on its path.
 struct RobotSteps<'p> {
     behaviour: &'p Behaviour,
     replay: RunReplay<'p>,
@@ -111,7 +111,7 @@ struct RobotSteps<'p> {
 }
 
 impl RobotSteps<'_> {
-    /// Makes the steps of a way; messages arrive before the last one.
+    /// Executes the steps of a path; messages arrive before the last step.
     fn go(&mut self, way: LabelledEdge, messages: &[ArrivingMessage]) -> Result<(), String> {
         let (steps, to) = self.behaviour.steps(self.at, way.observable, way.to);
         self.at = to;

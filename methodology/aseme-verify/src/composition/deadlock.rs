@@ -3,7 +3,8 @@
 use super::product::{GlobalEvent, GlobalProduct, ProductEdge};
 use crate::conformance::graph::LabelledEdge;
 
-/// So many other states of a deadlock are looked at if the way to the first is not confirmed.
+/// The number of further states of a deadlock that are tried if the path to the first is not
+/// confirmed.
 const OTHERS: usize = 32;
 
 /// States in which some robots wait forever.

@@ -106,7 +106,7 @@ pub(crate) struct GlobalProduct<'a> {
     pub(crate) overflows: BTreeMap<usize, usize>,
 }
 
-/// Finds out what robots do together, within the limits of the settings.
+/// Explores the product of the robots within the limits of the settings.
 pub(crate) fn product<'a>(
     robots: &'a [ComposedRobot],
     behaviours: &'a [Behaviour],
@@ -161,7 +161,7 @@ impl<'a> CompositionSearch<'a> {
         while let Some(state) = self.open.pop_front() {
             let progress = self.progress();
             if progress.bytes > self.settings.bytes || self.settings.observer.stops(progress) {
-                // of what was not looked at nothing bad is believed
+                // unexplored states count as harmless
                 self.found.open_ended.push(state);
                 self.found.open_ended.extend(self.open.drain(..));
                 return;

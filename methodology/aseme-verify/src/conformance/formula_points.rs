@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::conformance::derivatives::{Residual, Symbol};
 
-/// The points of formulas: what is left of them, and what the chart does there of what they allow.
+/// The points of formulas: the residual, and the behaviour of the chart there.
 #[derive(Default)]
 pub(crate) struct FormulaPoints {
     numbers: BTreeMap<BTreeSet<Residual>, usize>,

@@ -15,7 +15,7 @@ pub(crate) struct SatisfiabilitySearch {
     left: usize,
     /// Whether an alternative was skipped or is satisfiable only if an unknown value permits it.
     is_open: bool,
-    /// Whether values will do of which not all is known.
+    /// Whether partially known values suffice.
     takes_inexact: bool,
 }
 

@@ -37,9 +37,9 @@ pub enum PropertyOutcome {
     /// There is a run that violates it: the machine has executed it, with values for all that it
     /// reads.
     Violated,
-    /// The exploration has found a run that violates it, which the machine is not known to make.
+    /// The exploration has found a violating run that the machine does not confirm.
     NotConfirmed,
-    /// There are more states than were looked at, and none of those that were violates it.
+    /// The limit of states was reached, and no explored state violates it.
     NotDecided,
 }
 

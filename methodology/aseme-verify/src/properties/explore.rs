@@ -27,7 +27,7 @@ pub(crate) enum ExplorationVerdict {
     Violated(String, bool),
     /// The exploration has such a run, but the machine is not known to make it: why.
     NotConfirmed(String, String),
-    /// There was more than was looked at.
+    /// The limit of states was reached.
     NotDecided,
 }
 

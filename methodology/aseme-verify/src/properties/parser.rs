@@ -224,7 +224,7 @@ impl Parser<'_> {
             "event" => self.named(PropertyFormulaKind::Event, "an event"),
             _ if is_known => self.missing(),
             _ => {
-                let message = format!("`{word}` is no formula");
+                let message = format!("`{word}` is not a formula");
                 let wrong = Diagnostic::error("E0841", begin, message);
                 let near = yase::diagnostic::nearest(&word, keywords());
                 self.found.push(wrong.with_hint(match near {

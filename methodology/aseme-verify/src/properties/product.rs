@@ -36,14 +36,14 @@ pub(crate) enum SearchOutcome {
     TooMuch,
 }
 
-/// So many runs are tried.
+/// The number of runs that are tried.
 const TRIED: usize = 256;
 
 /// Confirms that a run of the graph is one of the chart, or says why it is not known to be.
 pub(crate) type Confirmation<'c> = dyn FnMut(&Violation) -> Result<(), Unconfirmed> + 'c;
 
-/// Looks for a run that meets the contrary of a property, looking at no more than `limit` places.
-/// Bounds are in ticks. Runs that are not confirmed are passed over.
+/// Searches for a run that satisfies the negation of a property, among at most `limit` product
+/// states. Bounds are in ticks. Runs that are not confirmed are passed over.
 pub(crate) fn violation(
     found: &LabelledGraph,
     contrary: &CompiledProperty,

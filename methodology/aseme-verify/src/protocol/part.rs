@@ -67,7 +67,7 @@ pub(crate) fn contained(player: &Iac, place: usize, eac: &Iac, part: usize, foun
                 || outcomes.iter().any(|outcome| logic.implies(guard, outcome))
         };
         if let Some(guard) = guard(way).filter(|guard| !is_exit(guard)) {
-            let message = format!("`{name}` is left when `{guard}`, which is no outcome of the protocol");
+            let message = format!("`{name}` is left when `{guard}`, which is not an outcome of the protocol");
             found.report("E0865", way.place.0, message, "make it an outcome, or remove the exit");
         }
     }

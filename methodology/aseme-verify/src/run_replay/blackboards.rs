@@ -34,9 +34,9 @@ struct ReplayBoard {
 /// An assignment that was executed.
 struct Write {
     assignment: Assignment,
-    /// Its value, of what was read then.
+    /// Its value, as a term over what was read then.
     value: ExpressionKind,
-    /// The delivery after which it was.
+    /// The last delivery before it.
     delivery: u32,
 }
 
@@ -57,7 +57,7 @@ pub(super) struct ReplayHost<'a> {
     log: RefCell<ReplayLog>,
 }
 
-/// Something that is so in a run.
+/// A fact of a run.
 #[derive(Clone)]
 pub(super) struct RunClaim {
     /// As it is written in the model.
@@ -186,7 +186,7 @@ impl<'a> ReplayHost<'a> {
         self.log.get_mut().claims.push(claim);
     }
 
-    /// All that is so, and that messages do not vanish again.
+    /// All facts, and that messages persist once they have arrived.
     pub(super) fn claims(&self) -> Result<Vec<RunClaim>, String> {
         let log = self.log.borrow();
         if let Some(trouble) = &log.trouble {

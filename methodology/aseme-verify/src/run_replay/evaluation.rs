@@ -68,7 +68,7 @@ impl Evaluation<'_> {
         }
     }
 
-    /// Parts of which one decides all if it has a value.
+    /// Operands of which one may decide the result.
     fn joined(&self, parts: &[Expression], decisive: bool) -> Truth {
         let parts: Vec<Truth> = parts.iter().map(|part| self.truth(part)).collect();
         let has = |truth: Truth| parts.contains(&truth);

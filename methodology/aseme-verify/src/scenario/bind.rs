@@ -27,7 +27,7 @@ impl ScenarioText {
     ///
     /// # Errors
     /// Invalid lines (E0890), states and events that the chart does not have (E0845, E0846), states
-    /// without an activity that return (E0893), actions that are no message (E0894), timers
+    /// without an activity that return (E0893), actions that are not messages (E0894), timers
     /// (E0895), durations (E0896), and invalid values and conditions.
     pub fn bind(
         &self,
@@ -127,7 +127,7 @@ impl ScenarioBinder<'_> {
             ("wait", false) => self.duration(rest).map(StepStimulus::Wait),
             ("timer", false) => self.timer(rest).map(StepStimulus::Timer),
             _ => {
-                let message = format!("`{}` is no step", self.text(span));
+                let message = format!("`{}` is not a step", self.text(span));
                 Err(Diagnostic::error("E0890", span, message).with_hint(CAUSES))
             }
         }
@@ -230,7 +230,7 @@ impl ScenarioBinder<'_> {
         let is_data =
             |action: &&Action| !matches!(action.kind, ActionKind::Assign { .. } | ActionKind::Publish(_));
         if let Some(action) = actions.iter().find(is_data) {
-            let wrong = Diagnostic::error("E0894", action.place.0, format!("`{action}` is no message"));
+            let wrong = Diagnostic::error("E0894", action.place.0, format!("`{action}` is not a message"));
             return Err(vec![
                 wrong.with_hint("write messages as `Message.field = value` or `publish.Message`"),
             ]);
@@ -284,7 +284,7 @@ impl ScenarioBinder<'_> {
 
     fn duration(&self, span: Span) -> Result<Duration, Diagnostic> {
         duration(self.text(span)).ok_or_else(|| {
-            let message = format!("`{}` is no duration", self.text(span));
+            let message = format!("`{}` is not a duration", self.text(span));
             Diagnostic::error("E0896", span, message).with_hint("write it as `100ms` or `2s`")
         })
     }

@@ -89,10 +89,10 @@ fn all_errors_are_reported_at_their_positions() {
         "a.scenario:3:6: error[E0845]: the chart `lamp` has no state `Shin` (did you mean `Shine`?)",
         "a.scenario:4:8: error[E0893]: the state `lamp` has no activity",
         "a.scenario:5:7: error[E0846]: the chart `lamp` has no event `of` (did you mean `off`?)",
-        "a.scenario:6:6: error[E0896]: `long` is no duration (write it as `100ms` or `2s`)",
-        "a.scenario:7:1: error[E0890]: `jump` is no step",
+        "a.scenario:6:6: error[E0896]: `long` is not a duration (write it as `100ms` or `2s`)",
+        "a.scenario:7:1: error[E0890]: `jump` is not a step",
         "a.scenario:8:9: error[E0895]: no action of the chart starts a timer `lat` (did you mean `late`?)",
-        "a.scenario:9:3: error[E0894]: `raise(off)` is no message",
+        "a.scenario:9:3: error[E0894]: `raise(off)` is not a message",
     ];
     let wrong = wrong(text);
     assert_eq!(wrong.len(), expected.len(), "{wrong:#?}");

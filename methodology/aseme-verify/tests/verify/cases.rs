@@ -241,7 +241,7 @@ fn rules_and_outcomes_read_what_the_program_has() {
     let linked = found(Some(world("p")));
     let unknown = "p.aip:2:1: error[M17]: in `[Ball.fuond && Ball.distance < 2]` of `a`: the message `Ball` has no field `fuond` (did you mean `found`?)";
     assert!(linked.iter().any(|it| it == unknown), "{linked:?}");
-    let unreadable = |it: &String| it.contains("error[E0838]: `[Ball.` of `a` is no condition");
+    let unreadable = |it: &String| it.contains("error[E0838]: `[Ball.` of `a` is not a condition");
     assert_eq!(linked.iter().filter(|it| unreadable(it)).count(), 1, "{linked:?}");
     assert_eq!(found(None).iter().filter(|it| it.contains("M17")).count(), 0);
 }

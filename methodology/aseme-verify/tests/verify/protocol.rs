@@ -232,7 +232,7 @@ fn a_protocol_that_is_engaged_in_at_any_time_is_refused() {
 fn a_protocol_that_is_left_for_another_reason_is_refused() {
     let found = broken(|text| text.replace("[Attack.ball_is_out]", "[Attack.ball_is_out || Attack.tired]"));
     assert_eq!(found.len(), 2);
-    assert!(found[0].contains("which is no outcome of the protocol"), "{found:?}");
+    assert!(found[0].contains("which is not an outcome of the protocol"), "{found:?}");
 }
 
 #[test]

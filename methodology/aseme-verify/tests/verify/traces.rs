@@ -48,5 +48,5 @@ fn an_invalid_trace_is_rejected_with_its_line() {
     );
     assert!(refused("start\ntimer r x\n").starts_with("line 2: the chart has no timer `r x`"));
     assert!(refused("start\n  true  Ball.found\n").starts_with("line 2: no guard of the chart reads"));
-    assert!(refused("start now\n").starts_with("line 1: `start now` is no step"));
+    assert!(refused("start now\n").starts_with("line 1: `start now` is not a step"));
 }

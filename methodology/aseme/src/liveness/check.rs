@@ -7,7 +7,7 @@ use yase::{Diagnostic, Span};
 
 use super::{Formula, Liveness};
 
-/// So many names are compared to find out what a formula that nothing reaches may be.
+/// The number of names that are compared to suggest what an unreachable formula may be for.
 const COMPARISONS: usize = 1_000_000;
 
 /// Shorter names than this resemble each other by chance.

@@ -83,7 +83,7 @@ impl Reader {
         let spaced = blanked[span.start..span.end].replace('!', " !").replace('%', " %");
         for word in spaced.split_whitespace() {
             if modifiers.accept(word).is_none() {
-                let message = format!("`{word}` is no modifier of a transition");
+                let message = format!("`{word}` is not a modifier of a transition");
                 let hint =
                     "a target may be followed by `also`, `!priority`, `%weight`, `interrupts` and `internal`";
                 self.report(

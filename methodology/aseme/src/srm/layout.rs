@@ -77,7 +77,7 @@ impl Reader {
             _ => None,
         };
         if number.is_none() {
-            let message = format!("`{}` is no modifier of a transition", &blanked[place.start..place.end]);
+            let message = format!("`{}` is not a modifier of a transition", &blanked[place.start..place.end]);
             let hint =
                 "in a layout a target may be followed by `also`, or `also 2` for the second added transition";
             self.report(Diagnostic::error("E0242", place, message).with_hint(hint));

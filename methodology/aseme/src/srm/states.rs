@@ -176,8 +176,8 @@ fn pieces(blanked: &str, span: Span) -> Vec<Span> {
     pieces
 }
 
-/// The key of a setting and the position after its `=`. An assignment is no setting: its target has
-/// a dot.
+/// The key of a setting and the position after its `=`. An assignment is not a setting: its target
+/// has a dot.
 fn key_of(blanked: &str, piece: Span) -> Option<(Span, usize)> {
     let text = &blanked[piece.start..piece.end];
     let equals = text.find('=').filter(|&at| !text[at + 1..].starts_with('='))?;

@@ -154,7 +154,7 @@ fn a_hundred_thousand_brackets_are_read_printed_and_dropped() {
         let root = liveness.formulas()[0].expression.expect("an expression");
         assert!(liveness.compact(root) == text[2..].replace(' ', ""), "{open}");
         let (_, findings) = aseme::liveness_to_statechart(&liveness);
-        assert_eq!(findings.is_empty(), open == "(", "groups are no levels of a chart");
+        assert_eq!(findings.is_empty(), open == "(", "groups are not levels of a chart");
     }
     for text in [
         "(".repeat(depth),

@@ -12,7 +12,7 @@ use crate::logic::Claim;
 /// Nodes with more outgoing transitions than this have only neighbouring ones compared.
 const MOST: usize = 64;
 
-/// So many conflicts of one transition with other regions are reported.
+/// The most conflicts of one transition with other regions that are reported.
 const CONFLICTS: usize = 3;
 
 impl GuardCheck<'_> {
