@@ -37,7 +37,7 @@ impl Error {
 
     /// The transport does not exist, or its feature is disabled.
     pub fn unknown_transport(name: &str) -> Error {
-        Error::new(ErrorKind::Settings, format!("`{name}` is no transport of this program"))
+        Error::new(ErrorKind::Settings, format!("`{name}` is not a transport of this program"))
     }
 
     /// The kind of the error.

@@ -16,7 +16,7 @@ const MOST_BYTES: usize = 64 << 20;
 const OVERHEAD: usize = 64;
 /// Polling interval of the writer. Waking it for each message would cost the publisher more than
 /// the message.
-const LOOK: Duration = Duration::from_millis(10);
+const POLL_INTERVAL: Duration = Duration::from_millis(10);
 
 /// An entry to be written.
 pub(crate) enum QueueEntry {
@@ -212,7 +212,7 @@ impl WriteQueue {
     pub(crate) fn fetch(&self, into: &mut Vec<QueueEntry>) -> bool {
         let mut state = self.state();
         if !state.should_flush() {
-            let waited = self.work.wait_timeout(state, LOOK);
+            let waited = self.work.wait_timeout(state, POLL_INTERVAL);
             state = waited.unwrap_or_else(PoisonError::into_inner).0;
         }
         std::mem::swap(&mut state.entries, into);

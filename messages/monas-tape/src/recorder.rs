@@ -102,8 +102,8 @@ impl<W: Write> Recorder<W> {
         self.messages
     }
 
-    /// Gives the file up after a failure: nothing more is written. Returns the number of messages
-    /// that the file has for certain, and of those that it may lack.
+    /// Abandons the file after a failure: nothing more is written. Returns the number of messages
+    /// that the file certainly has, and of those that it may lack.
     pub(crate) fn abandon(self) -> (u64, u64) {
         // Dropping the writer would write the summary.
         drop(self.writer.into_inner());

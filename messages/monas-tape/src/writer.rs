@@ -268,7 +268,7 @@ impl TapeWriter {
         }
     }
 
-    /// Gives the present file up; the number of messages that were being written is lost.
+    /// Abandons the present file; the number of messages that were being written is unknown.
     fn interrupt(&mut self, error: &McapError, lost: u64) {
         let Some(recorder) = self.recorder.take() else { return };
         let (written, missing) = recorder.abandon();

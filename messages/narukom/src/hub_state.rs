@@ -286,7 +286,7 @@ mod tests {
             assert!(beside(std::ptr::from_ref(&front.sample.header).addr()));
             assert!(exchange.front_entry(1).is_none());
         }
-        // A read of the rings finds it there.
+        // A read of the rings finds the publication there.
         let slot = hub.topic("test/seen").unwrap();
         let exchange = hub.state();
         assert!(exchange.front_entry(2).is_none());

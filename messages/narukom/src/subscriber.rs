@@ -96,7 +96,7 @@ impl fmt::Debug for Subscriber {
 pub(crate) fn matching(catalogue: &TopicTable, pattern: &str) -> Result<Vec<TopicSlot>, Error> {
     if !is_topic_pattern(pattern) {
         let text = format!(
-            "`{pattern}` is no pattern: a topic's path, of which `*` stands for a segment, a last `**` for any"
+            "`{pattern}` is not a pattern: a topic's path, of which `*` stands for a segment, a last `**` for any"
         );
         return Err(Error::new(ErrorKind::BadPath, text));
     }

@@ -21,7 +21,7 @@ pub(super) const ENDING: &str = "sock";
 const ANSWER_LIMIT: usize = 64 << 20;
 
 /// Time after which a run that does not reply is considered dead.
-const PATIENCE: Duration = Duration::from_secs(5);
+const TIMEOUT: Duration = Duration::from_secs(5);
 
 /// The control sockets in a folder, sorted by name: the name of each run and the path of its
 /// socket. Some may be left over from runs that were killed. A folder that other users can access
@@ -63,8 +63,8 @@ impl ControlClient {
         let failed =
             |error: io::Error| Error::new(ErrorKind::Connection, format!("{}: {error}", path.display()));
         let stream = UnixStream::connect(path).map_err(failed)?;
-        stream.set_read_timeout(Some(PATIENCE)).map_err(failed)?;
-        stream.set_write_timeout(Some(PATIENCE)).map_err(failed)?;
+        stream.set_read_timeout(Some(TIMEOUT)).map_err(failed)?;
+        stream.set_write_timeout(Some(TIMEOUT)).map_err(failed)?;
         Ok(ControlClient { stream })
     }
 

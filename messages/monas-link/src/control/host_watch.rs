@@ -12,10 +12,10 @@ use super::server::name;
 use super::{ControlTarget, PAYLOAD_LIMIT, frame};
 
 /// Polling interval of the hubs; the maximum delay of a message.
-const LOOK: Duration = Duration::from_millis(2);
+const POLL_INTERVAL: Duration = Duration::from_millis(2);
 
 /// Number of polls after which new remote hosts are searched.
-const LOOKS_TO_NEWCOMERS: u32 = 50;
+const HOST_SEARCH_POLLS: u32 = 50;
 
 /// The most messages of one hub that are sent before the next hub has its turn.
 const TURN: usize = 1024;
@@ -104,14 +104,14 @@ impl TopicWatch {
         run: &dyn ControlTarget,
         stops: &AtomicBool,
     ) -> io::Result<()> {
-        stream.set_read_timeout(Some(LOOK))?;
+        stream.set_read_timeout(Some(POLL_INTERVAL))?;
         let mut bytes = Vec::new();
         for look in 1_u32.. {
             self.send_messages(stream, run, &mut bytes)?;
             if stops.load(Ordering::SeqCst) {
                 break;
             }
-            if look % LOOKS_TO_NEWCOMERS == 0 {
+            if look % HOST_SEARCH_POLLS == 0 {
                 self.add_new_hosts().map_err(io::Error::other)?;
             }
             // Waiting for input also serves as the polling interval.

@@ -24,10 +24,10 @@ use crate::error::{Error, ErrorKind};
 use crate::socket_folder::lock_names;
 
 /// Interval at which a thread checks whether it should stop.
-const LOOK: Duration = Duration::from_millis(100);
+const CHECK_INTERVAL: Duration = Duration::from_millis(100);
 
 /// Number of such intervals without a whole request after which a tool is disconnected.
-const PATIENCE: usize = 100;
+const IDLE_CHECKS: usize = 100;
 
 /// A request of so many bytes may arrive in one more part. A tool that sends its request in smaller
 /// parts is disconnected, since it would hold its connection for as long as it likes.
@@ -81,7 +81,7 @@ impl ControlSocket {
     pub fn bind(folder: &Path, name: &str) -> Result<ControlSocket, Error> {
         let is_plain = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
         if name.is_empty() || !name.chars().all(is_plain) {
-            let text = format!("`{name}` is no name of a control socket: letters, digits, `_` and `-`");
+            let text = format!("`{name}` is not a name of a control socket: letters, digits, `_` and `-`");
             return Err(Error::new(ErrorKind::Settings, text));
         }
         let path = folder.join(format!("{name}.{}", super::client::ENDING));
@@ -164,7 +164,7 @@ fn remove_dead(path: &Path) -> Result<(), Error> {
 }
 
 fn accept(listener: &UnixListener, state: &Arc<ServerState>) {
-    let look = Timespec { tv_sec: 0, tv_nsec: LOOK.as_nanos() as i64 };
+    let look = Timespec { tv_sec: 0, tv_nsec: CHECK_INTERVAL.as_nanos() as i64 };
     let mut tools: Vec<ToolConnection> = Vec::new();
     while !state.stops.load(Ordering::SeqCst) {
         // An error of the stream shows again when accepting.
@@ -191,7 +191,7 @@ struct ToolConnection {
 /// Starts to serve a tool, if it belongs to the owner and there are not too many.
 fn serve(mut stream: UnixStream, state: Arc<ServerState>) -> Option<ToolConnection> {
     stream.set_nonblocking(false).ok()?;
-    stream.set_read_timeout(Some(LOOK)).ok()?;
+    stream.set_read_timeout(Some(CHECK_INTERVAL)).ok()?;
     stream.set_write_timeout(Some(SLOWEST)).ok()?;
     if !is_owner(&stream) {
         let _ = frame::write(&refused("this run belongs to another user"), &mut stream);
@@ -255,7 +255,7 @@ impl Read for RequestReader<'_> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         loop {
             self.waits += 1;
-            if self.waits > PATIENCE + self.bytes / PART || self.stops.load(Ordering::SeqCst) {
+            if self.waits > IDLE_CHECKS + self.bytes / PART || self.stops.load(Ordering::SeqCst) {
                 return Err(io::ErrorKind::TimedOut.into());
             }
             match self.stream.read(buffer) {

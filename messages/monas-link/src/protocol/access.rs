@@ -70,7 +70,7 @@ impl AccessList {
             }
             [_, "publish", pattern] => {
                 return Err(format!(
-                    "`{pattern}` is no pattern of topics, such as `soccer/ball` or `soccer/**`"
+                    "`{pattern}` is not a pattern of topics, such as `soccer/ball` or `soccer/**`"
                 ));
             }
             [host, "manage"] => self.rights(host).manage = true,
@@ -80,7 +80,7 @@ impl AccessList {
             }
             [_] => return Err("a host needs a right: `publish TOPIC` or `manage`".to_owned()),
             [_, right, ..] => {
-                return Err(format!("`{right}` is no right: there are `publish TOPIC` and `manage`"));
+                return Err(format!("`{right}` is not a right: there are `publish TOPIC` and `manage`"));
             }
         }
         Ok(())
@@ -144,7 +144,7 @@ mod tests {
         assert_eq!(errors.iter().map(|error| error.line).collect::<Vec<_>>(), [1, 2, 3, 4, 5]);
         assert_eq!(
             errors[1].to_string(),
-            "line 2: `fly` is no right: there are `publish TOPIC` and `manage`"
+            "line 2: `fly` is not a right: there are `publish TOPIC` and `manage`"
         );
         assert!(list.may_publish("f", "any/topic"));
     }

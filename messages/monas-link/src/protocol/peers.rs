@@ -18,7 +18,7 @@ pub(crate) const OFFER_LIMIT: usize = 1024;
 
 /// The number of earlier incarnations of a host that are remembered, so that late packets are
 /// recognised.
-const REMEMBERED_LIVES: usize = 4;
+const REMEMBERED_INCARNATIONS: usize = 4;
 
 /// How often a refusal is repeated without an acknowledgement.
 pub(crate) const REFUSAL_TRIES: u8 = 8;
@@ -97,7 +97,7 @@ impl Peer {
         self.alive = now;
         self.is_doubted = false;
         self.past.retain(|past| *past != incarnation);
-        if self.past.len() == REMEMBERED_LIVES {
+        if self.past.len() == REMEMBERED_INCARNATIONS {
             self.past.pop_front();
         }
         self.past.extend(self.incarnation.replace(incarnation));

@@ -30,7 +30,7 @@ const FRAME: usize = 1 << 10;
 const ENDING: &str = "link";
 
 /// Interval at which the receiving thread checks whether it should stop.
-const PATIENCE: Duration = Duration::from_millis(100);
+const CHECK_INTERVAL: Duration = Duration::from_millis(100);
 
 /// Sockets in a folder, one per link; a broadcast packet is sent to each of them.
 #[derive(Debug)]
@@ -47,7 +47,7 @@ pub struct LocalTransport {
 /// the system's folder for temporary files, which only this user can access.
 ///
 /// # Errors
-/// The folder for want of the variable cannot be created, or is that of another user or open to
+/// Without the variable: the folder cannot be created, belongs to another user, or is open to
 /// others.
 pub fn default_folder() -> Result<PathBuf, Error> {
     match runtime_folder() {
@@ -68,7 +68,7 @@ fn private_folder(shared: &Path) -> Result<PathBuf, Error> {
     let path = shared.join(format!("monas-{}", rustix::process::geteuid().as_raw()));
     // A symbolic link is not followed: it may lead elsewhere at any time.
     let created = match fs::symlink_metadata(&path) {
-        Ok(found) if !found.is_dir() => Err(io::Error::other(format!("{} is no folder", path.display()))),
+        Ok(found) if !found.is_dir() => Err(io::Error::other(format!("{} is not a folder", path.display()))),
         _ => monas_files::private_folder(&path),
     };
     match created {
@@ -89,7 +89,7 @@ impl LocalTransport {
     pub fn new(folder: &Path, name: &str, inbox: Arc<PacketInbox>) -> Result<LocalTransport, Error> {
         let is_plain = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
         if name.is_empty() || !name.chars().all(is_plain) {
-            let text = format!("`{name}` is no name of a socket: letters, digits, `_` and `-`");
+            let text = format!("`{name}` is not a name of a socket: letters, digits, `_` and `-`");
             return Err(Error::new(ErrorKind::Settings, text));
         }
         let path = folder.join(format!("{name}.{ENDING}"));
@@ -101,7 +101,7 @@ impl LocalTransport {
         fs::set_permissions(&path, Permissions::from_mode(0o600)).map_err(failed)?;
         drop(names);
         let listener = socket.try_clone().map_err(failed)?;
-        listener.set_read_timeout(Some(PATIENCE)).map_err(failed)?;
+        listener.set_read_timeout(Some(CHECK_INTERVAL)).map_err(failed)?;
         // Sending uses a separate socket, since blocking mode is a property of the file and not of
         // the handle.
         let socket = UnixDatagram::unbound().map_err(failed)?;
@@ -232,7 +232,7 @@ mod tests {
         let elsewhere = shared.path().join("elsewhere");
         fs::rename(&path, &elsewhere).unwrap();
         std::os::unix::fs::symlink(&elsewhere, &path).unwrap();
-        assert!(private_folder(shared.path()).unwrap_err().to_string().contains("no folder"));
+        assert!(private_folder(shared.path()).unwrap_err().to_string().contains("not a folder"));
         if rustix::process::geteuid().is_root() {
             fs::remove_file(&path).unwrap();
             std::os::unix::fs::chown(&elsewhere, Some(12345), None).unwrap();

@@ -18,13 +18,13 @@ use crate::protocol::schema::differences;
 use crate::protocol::wire::{Beat, Control, Hello, Offer, Refusal, Stamp};
 
 /// The most bytes of all hosts together that wait for earlier messages.
-const ALL_HELD_BYTES: usize = 64 << 20;
+const MAX_HELD_BYTES: usize = 64 << 20;
 
 /// The most missing ranges of a Beat that are handled.
 const ASKED_SPANS: usize = 1024;
 
 /// The most lines of a difference that are reported.
-const TOLD_LINES: usize = 8;
+const REPORTED_LINES: usize = 8;
 
 impl Node {
     /// Handles a received packet.
@@ -286,7 +286,7 @@ impl Node {
                     DeliveryContext::new(&packet.from, peer.clock.offset(), now, &mut self.deliveries);
                 let mut deliver = |message| context.deliver(*topic, message);
                 incoming.arrive(number, message, &mut deliver);
-                if held + packet.payload.len() > ALL_HELD_BYTES {
+                if held + packet.payload.len() > MAX_HELD_BYTES {
                     incoming.end(&mut deliver);
                 }
             }
@@ -353,7 +353,7 @@ fn message(stamp: Stamp, packet: &Packet) -> StampedMessage {
 /// The differences between another link's declaration of a topic and ours.
 fn declaration_differences(topic: &super::LinkTopic, theirs: &Refusal) -> String {
     let kinds = format!("{} there, {} here", theirs.kind, topic.kind);
-    let lines = differences(topic.schema.lines(), &theirs.schema, TOLD_LINES);
+    let lines = differences(topic.schema.lines(), &theirs.schema, REPORTED_LINES);
     match (theirs.kind == topic.kind.to_string(), lines.is_empty()) {
         (false, true) => kinds,
         (false, false) => format!("{kinds}; {}", lines.join("; ")),

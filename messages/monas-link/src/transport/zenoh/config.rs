@@ -129,7 +129,7 @@ fn pem(path: &Path, what: &str) -> Result<String, Error> {
         }
         Ok(_) => match path.to_str() {
             Some(name) => Ok(text(name)),
-            None => failed("is no name in UTF-8".to_owned()),
+            None => failed("is not a name in UTF-8".to_owned()),
         },
     }
 }
