@@ -259,7 +259,7 @@ impl AgentReader<'_> {
 
     /// The options that the kind of the body has; files are found as everywhere in a configuration.
     fn body_options(&mut self, kind: &str, values: &Values<'_>) -> BTreeMap<String, String> {
-        // That there is no such kind has been said.
+        // An unknown kind has already been reported.
         let Ok(kind) = BodyKind::named(kind) else { return BTreeMap::new() };
         let mut options = BTreeMap::new();
         for given in values.parameters() {

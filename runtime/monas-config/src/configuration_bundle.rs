@@ -127,7 +127,9 @@ impl ConfigurationBundle {
                 !name.is_empty() && path.components().all(|part| matches!(part, Component::Normal(_)));
             match is_inside {
                 true => Ok(folder.join(path)),
-                false => Err(io::Error::other(format!("`{name}` is no name of a file of a configuration"))),
+                false => {
+                    Err(io::Error::other(format!("`{name}` is not a name of a file of a configuration")))
+                }
             }
         };
         for (name, content) in &self.files {

@@ -225,7 +225,7 @@ fn setting(text: &str, grammar: &Grammar) -> Result<Element, Box<Diagnostic>> {
     };
     let example = || "write `agent.NAME.priority=2`: a path, `=` and a value".to_owned();
     let (parts, value) = parts(text).ok_or_else(|| {
-        wrong(Span::new(0, text.len()), format!("`{text}` is no path with a value"), example())
+        wrong(Span::new(0, text.len()), format!("`{text}` is not a path with a value"), example())
     })?;
     let [first, rest @ ..] = parts.as_slice() else {
         return Err(wrong(Span::new(0, text.len()), format!("`{text}` has no path"), example()));

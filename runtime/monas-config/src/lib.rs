@@ -16,7 +16,7 @@
 //! | attribute of `agent` and `provider` | means |
 //! |---|---|
 //! | `thread_frequency` | cycles per second, 0 for no limit; required for a list of activities |
-//! | `is_real_time`, `priority` | whether the system's real-time scheduling is wanted for its threads, and how urgent they are then, from 1 to 99; where it is not permitted the log says so, and they run on like others |
+//! | `is_real_time`, `priority` | whether its threads request real-time scheduling, and their priority, from 1 to 99; if the system denies the request, the log reports it and the threads use ordinary scheduling |
 //! | `cores` | the numbers of the cores that its threads may run on, such as `2 3`; by default any |
 //! | `stats_cycle` | number of cycles between reports of its times in the log; 0 for none |
 //! | `workers` | number of threads for the activities of its statecharts in real time; by default as many as can be active at once, at most twelve |

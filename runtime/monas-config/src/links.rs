@@ -187,7 +187,7 @@ impl LinkReader<'_> {
         if is_endpoint(text) {
             return Some(text.to_owned());
         }
-        let message = format!("`{text}` is no endpoint");
+        let message = format!("`{text}` is not an endpoint");
         let hint = match listens {
             true => {
                 "`tcp/127.0.0.1:7447` or `tls/0.0.0.0:7447`; a port alone, such as `7447`, is local to this computer"

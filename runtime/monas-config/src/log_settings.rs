@@ -7,7 +7,7 @@ use yase::Diagnostic;
 use crate::severity::Severity;
 use crate::{Element, ElementRule, Grammar, Kind, Layers, resolve};
 
-/// Outputs and filters of a log.
+/// Outputs and filters of the log.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub struct LogSettings {
     /// The file. If it exists, the log takes the next free name.

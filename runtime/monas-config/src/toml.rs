@@ -1,4 +1,4 @@
-//! TOML with the content of XML: the same elements, with the location of each value.
+//! Reads TOML into the same elements as XML, with the location of each value.
 //!
 //! A table is an element, an array of tables several elements of one name. A key is an attribute
 //! or, if the grammar has such an element, a child with a text. The text of an element with

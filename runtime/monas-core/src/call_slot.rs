@@ -158,7 +158,7 @@ pub fn each(mut look: impl FnMut(LastCall)) {
     while let Some(slot) = next {
         let is_running = slot.is_running.load(Ordering::Relaxed);
         let is_current = current.is_some_and(|current| std::ptr::eq(slot, current));
-        // A thread that has ended is of interest if it ended in a call.
+        // A thread that has ended matters only if it ended in a call.
         if let Some(name) = slot.name.get()
             && (is_running || slot.thread.load(Ordering::Acquire) != 0)
         {

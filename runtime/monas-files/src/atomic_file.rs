@@ -49,7 +49,7 @@ pub fn write_new(path: impl AsRef<Path>, content: impl AsRef<[u8]>) -> io::Resul
 #[derive(Debug)]
 pub struct AtomicFile {
     output: BufWriter<File>,
-    /// `None` if the output is no regular file.
+    /// `None` if the output is not a regular file.
     draft: Option<Draft>,
 }
 
@@ -80,7 +80,7 @@ impl AtomicFile {
         if let Some(there) = &replaced
             && there.permissions().readonly()
         {
-            // A rename would replace it all the same.
+            // A rename would replace a read-only file too.
             OpenOptions::new().write(true).open(&target)?;
         }
         let (file, path) = draft(&target)?;
@@ -179,7 +179,7 @@ fn adopt(draft: &File, replaced: &Metadata) -> io::Result<()> {
 #[cfg(unix)]
 fn sync_folder(target: &Path) -> io::Result<()> {
     match File::open(folder_of(target)).and_then(|folder| folder.sync_all()) {
-        // Some file systems do not know it, and a folder may be closed to readers.
+        // Some file systems do not support it, and a folder may not be readable.
         Err(error)
             if matches!(error.kind(), io::ErrorKind::InvalidInput | io::ErrorKind::PermissionDenied) =>
         {

@@ -6,7 +6,7 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 /// The largest number in the name of a file.
-const NAMESAKES: u32 = 999_999;
+const LARGEST_NUMBER: u32 = 999_999;
 
 /// The treatment of an existing file with the requested name.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
@@ -44,7 +44,7 @@ impl ExclusiveFile {
     }
 
     fn next_free(path: &Path) -> io::Result<ExclusiveFile> {
-        for number in 1..=NAMESAKES {
+        for number in 1..=LARGEST_NUMBER {
             let path = numbered(path, number);
             match OpenOptions::new().append(true).create_new(true).open(&path) {
                 // Another process that replaces files may have been faster.

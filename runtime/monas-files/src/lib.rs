@@ -1,8 +1,8 @@
-//! Files that must not be lost: texts of a person, recordings, and files that are trusted.
+//! Safe handling of files: texts of the user, recordings, and files that are trusted.
 //!
 //! - An [`AtomicFile`] replaces a file in one step: readers see the old content or the new one, and
 //!   a full disk leaves the old one. [`write()`] is its short form. Every command that writes a
-//!   file of a person uses it.
+//!   file of the user uses it.
 //! - An [`ExclusiveFile`] belongs to one process while it is written. A name that exists is left
 //!   alone and the next free one is taken, unless replacing it was requested. Tapes and logs use
 //!   it.

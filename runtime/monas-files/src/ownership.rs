@@ -67,8 +67,8 @@ pub fn check_private(path: &Path) -> io::Result<()> {
 /// them, and neither others nor a group other than the user's own may write it. Never blocks.
 ///
 /// # Errors
-/// It cannot be opened, is no regular file ([`io::ErrorKind::InvalidInput`]), or can be changed by
-/// others ([`io::ErrorKind::PermissionDenied`]).
+/// It cannot be opened, is not a regular file ([`io::ErrorKind::InvalidInput`]), or can be changed
+/// by others ([`io::ErrorKind::PermissionDenied`]).
 #[cfg(unix)]
 pub fn open_trusted(path: &Path) -> io::Result<File> {
     use std::os::unix::fs::MetadataExt;
@@ -80,7 +80,7 @@ pub fn open_trusted(path: &Path) -> io::Result<File> {
     let file = File::from(rustix::fs::open(path, flags, Mode::empty())?);
     let found = file.metadata()?;
     if !found.is_file() {
-        return Err(io::Error::new(io::ErrorKind::InvalidInput, "it is no regular file"));
+        return Err(io::Error::new(io::ErrorKind::InvalidInput, "it is not a regular file"));
     }
     if !is_own(found.uid()) {
         return Err(denied(format!("it belongs to another user (number {})", found.uid())));
@@ -96,13 +96,13 @@ pub fn open_trusted(path: &Path) -> io::Result<File> {
 /// Opens a regular file for reading. Owners and modes are those of Unix.
 ///
 /// # Errors
-/// It cannot be opened, or is no regular file.
+/// It cannot be opened, or is not a regular file.
 #[cfg(not(unix))]
 pub fn open_trusted(path: &Path) -> io::Result<File> {
     let file = File::open(path)?;
     match file.metadata()?.is_file() {
         true => Ok(file),
-        false => Err(io::Error::new(io::ErrorKind::InvalidInput, "it is no regular file")),
+        false => Err(io::Error::new(io::ErrorKind::InvalidInput, "it is not a regular file")),
     }
 }
 

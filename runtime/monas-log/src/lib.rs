@@ -7,7 +7,7 @@
 //! |---|---|---|
 //! | `FatalError` | [`fatal!`](crate::fatal) | `FATAL` |
 //! | `Error` | `tracing::error!` | `ERROR` |
-//! | `Info` | `tracing::info!`; also `tracing::warn!`, which the thesis does not know | `INFO`, `WARN` |
+//! | `Info` | `tracing::info!`; also `tracing::warn!`, which the thesis does not have | `INFO`, `WARN` |
 //! | `ExtraInfo` | `tracing::debug!` | `DEBUG` |
 //! | `ExtraExtraInfo` | `tracing::trace!` | `TRACE` |
 //!
@@ -34,10 +34,10 @@
 //!
 //! | element | means |
 //! |---|---|
-//! | `MessageLogFile` | the file; if it exists, the next free name is taken; no file if it is not said |
+//! | `MessageLogFile` | the file; if it exists, the next free name is taken; without this element no file is written |
 //! | `MessageLogCerr` | `1` for the console too |
 //! | `MessageLogCerrColor` | `1` for colours there |
-//! | `MessageLogFilter` | the activities or agents whose messages are wanted, or `all` |
+//! | `MessageLogFilter` | the activities or agents whose messages are logged, or `all` |
 //! | `LogFileVerbosityLevel` | 0 or less fatal errors, 1 errors, 2 info, 3 extra info, 4 all; errors are always written |
 //! | `MessageLogFormat` | `text`, or `json` for a JSON object a line; the thesis does not have it |
 //!

@@ -39,7 +39,7 @@ impl ModuleFile {
                 Ok(()) => Ok(ModuleFile { path, bytes, note }),
                 Err(reason) => Err(damaged(&path, &reason)),
             },
-            Err(reason) => Err(unread(&path, &format!("this is no module of Monas: {reason}"))),
+            Err(reason) => Err(unread(&path, &format!("this is not a module of Monas: {reason}"))),
         }
     }
 
@@ -192,7 +192,7 @@ mod tests {
         let pipe = folder.path().join("pipe.so");
         assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
         let wrong = ModuleFile::read(&pipe).unwrap_err()[0].to_string();
-        assert!(wrong.contains("it is no regular file"), "{wrong}");
+        assert!(wrong.contains("it is not a regular file"), "{wrong}");
     }
 
     #[test]

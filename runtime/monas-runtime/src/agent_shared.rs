@@ -38,7 +38,7 @@ pub(crate) struct AgentShared {
     was_reported: AtomicBool,
     /// The threads that call its activities.
     observed: Arc<ObservedThreads>,
-    /// Whether the run ends without waiting for its threads.
+    /// Whether the run ends without joining its threads.
     is_abandoned: AtomicBool,
 }
 
@@ -256,7 +256,7 @@ impl AgentShared {
         &self.observed
     }
 
-    /// Gives up threads that do not end, and names the calls that do not return.
+    /// Abandons threads that do not end, and reports the calls that do not return.
     pub(crate) fn abandon(&self, now: Timestamp) {
         let calls: Vec<String> = self.observed.open_calls(now).iter().map(LastingCall::to_string).collect();
         let reason = match calls.is_empty() {

@@ -25,7 +25,7 @@ impl CallMeter {
         CallMeter { clock, ..CallMeter::default() }
     }
 
-    /// The next operation begins now.
+    /// Marks the start of the next operation.
     pub(crate) fn begin(&mut self) {
         if let Some(clock) = &self.clock {
             self.last_time = clock.now();

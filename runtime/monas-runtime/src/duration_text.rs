@@ -1,4 +1,4 @@
-//! DurationText durations in log lines.
+//! Durations in log lines.
 
 use std::fmt;
 use std::time::Duration;

@@ -57,7 +57,7 @@ pub(crate) struct RecentCalls {
 }
 
 impl FreeLoop {
-    /// Begins a turn. A message, a time that was reached and a command are waits.
+    /// Begins a turn. Waking up for a message, a deadline or a command counts as a wait.
     pub(crate) fn begin_turn(&mut self, is_free: bool) {
         self.is_free = is_free;
     }

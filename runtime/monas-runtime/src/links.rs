@@ -16,10 +16,10 @@ use monas_link::LinkStatistics;
 use monas_link::LinkTransport;
 
 /// Maximum wait for the clock of another end.
-const PATIENCE: Duration = Duration::from_secs(30);
+const TIMEOUT: Duration = Duration::from_secs(30);
 
 /// Interval between checks for the clock of another end.
-const LOOK: Duration = Duration::from_millis(20);
+const CHECK_INTERVAL: Duration = Duration::from_millis(20);
 
 /// Maximum round-trip time of the packets that measure a clock offset; the error is at most half of
 /// it.
@@ -90,15 +90,15 @@ impl RunningLink {
 /// again.
 ///
 /// # Errors
-/// The link cannot be established, or the other end does not reply within [`PATIENCE`].
+/// The link cannot be established, or the other end does not reply within [`TIMEOUT`].
 pub(crate) fn time_of_other(hub: &Hub, config: &LinkConfig, other: &str) -> Result<RunClock, Error> {
     let (own, waiting) = (RunClock::start(), StopHandle::new());
     let link = RunningLink::start(hub, config.clone(), move || own.now())?;
-    while own.now() < Timestamp::ZERO + PATIENCE {
+    while own.now() < Timestamp::ZERO + TIMEOUT {
         if let Some(ahead) = link.clock_of(other) {
             return Ok(own.ahead_by(ahead));
         }
-        waiting.wait_until(own.now() + LOOK, &own);
+        waiting.wait_until(own.now() + CHECK_INTERVAL, &own);
     }
     let message = format!("the link `{}` of `{}` has no clock of `{other}`", link.name, link.host);
     let hint = "is that run active, and does its link exchange topics with this one?";

@@ -153,7 +153,7 @@ impl ActivityList {
     }
 
     /// Ends the cycle with the activity at that index: publishes the outputs, unless the watchdog
-    /// has given the cycle up.
+    /// has abandoned the cycle.
     fn publish(
         &mut self,
         outcome: CycleOutcome,
@@ -169,7 +169,7 @@ impl ActivityList {
         outcome
     }
 
-    /// An activity returned after the watchdog had given it up: the outputs of the cycle are
+    /// An activity returned after the watchdog had abandoned it: the outputs of the cycle are
     /// discarded.
     fn was_stuck(&mut self, index: usize) -> CycleOutcome {
         let entry = &mut self.entries[index];

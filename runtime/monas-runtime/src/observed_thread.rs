@@ -42,7 +42,7 @@ impl ObservedThreads {
 #[derive(Clone, Debug)]
 pub(crate) struct LastingCall {
     pub(crate) call: OpenCall,
-    /// The time since the first observation that saw it.
+    /// The time since it was first observed.
     pub(crate) lasts: Duration,
     /// Its thread's number in the system.
     thread: Option<i32>,

@@ -36,7 +36,7 @@ use monas_core::statistics::{AgentStatistics, Timing};
 use monas_log::LogHosts;
 
 /// Timeout for the reply of a thread, unless its cycle takes longer.
-const PATIENCE: Duration = Duration::from_secs(1);
+const TIMEOUT: Duration = Duration::from_secs(1);
 
 /// A cycle of a list counts as stuck after this number of periods, and not before [`STUCK_LIST`].
 const PERIODS: u32 = 10;
@@ -49,12 +49,12 @@ const STUCK_CALL: Duration = Duration::from_secs(10);
 const SHUTDOWN: Duration = Duration::from_secs(3);
 
 /// Polling interval while threads end.
-const NAP: Duration = Duration::from_millis(2);
+const END_POLL_INTERVAL: Duration = Duration::from_millis(2);
 
 /// Sleeps for one polling interval.
 #[expect(clippy::disallowed_methods, reason = "threads do not report their end")]
 pub(crate) fn poll_pause() {
-    thread::sleep(NAP);
+    thread::sleep(END_POLL_INTERVAL);
 }
 
 /// The agents of a host.
@@ -205,7 +205,8 @@ impl RealTimeHost {
         self.agents.handles.iter().for_each(AgentHandle::end);
     }
 
-    /// Gives up the threads that have not ended by now; the run was asked to end at `asked`.
+    /// Abandons the threads that have not ended by now; the end of the run was requested at
+    /// `asked`.
     pub(crate) fn abandon(&self, asked: Timestamp, now: Timestamp) {
         let late = |worker: &&AgentHandle| {
             let limit = worker.stuck_after.unwrap_or(SHUTDOWN);
@@ -490,7 +491,7 @@ impl AgentControl for AgentThreads {
 
     fn inspect_chart(&self, agent: &str, place: usize, aspect: ChartAspect) -> Result<Vec<String>, String> {
         let worker = self.agent_handle(agent).ok_or_else(|| format!("`{agent}` is not there"))?;
-        worker.shared.inspect_chart(place, aspect, PATIENCE)
+        worker.shared.inspect_chart(place, aspect, TIMEOUT)
     }
 
     fn cycles(&self, agent: &str) -> u64 {
@@ -520,7 +521,7 @@ impl AgentControl for AgentThreads {
             }
         }
         let starts = of_agent && orders.commands.iter().any(|command| matches!(command, AgentCommand::Start));
-        let mut said = worker.shared.apply(orders, PATIENCE)?;
+        let mut said = worker.shared.apply(orders, TIMEOUT)?;
         if starts && self.safe_state.load(Ordering::SeqCst) {
             said.push(SAFE_STATE.to_owned());
         }
@@ -550,7 +551,7 @@ impl AgentControl for AgentThreads {
         worker.shared.stop(STOPPED_BY_REQUEST);
         worker.end();
         let began = self.clock.now();
-        while !worker.is_finished() && self.clock.now() < began + PATIENCE {
+        while !worker.is_finished() && self.clock.now() < began + TIMEOUT {
             poll_pause();
         }
         if !worker.is_finished() {

@@ -23,7 +23,7 @@ use monas_core::records::{
 const WAITING: usize = 64;
 
 /// Timeout of a request to a simulated run that is not being advanced.
-const PATIENCE: Duration = Duration::from_secs(2);
+const TIMEOUT: Duration = Duration::from_secs(2);
 
 /// A handle for inspecting a run from outside: its hubs and its time. It may outlive the run.
 #[derive(Clone)]
@@ -288,7 +288,7 @@ impl ExternalRequests {
     /// Submits a request and waits for its reply. Withdraws the request if the run does not take
     /// it in time.
     fn submit<T>(&self, what: impl FnOnce(SyncSender<T>) -> ExternalRequest) -> Result<T, String> {
-        self.submit_within(PATIENCE, what)
+        self.submit_within(TIMEOUT, what)
     }
 
     fn submit_within<T>(

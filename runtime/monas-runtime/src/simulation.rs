@@ -222,8 +222,8 @@ impl Simulation {
         SimulationThread::work(self, stop)?.wait(|| true, limit)
     }
 
-    /// As [`run_until`](Simulation::run_until), but given up if it has not returned within `limit`,
-    /// in real time, after `is_cancelled`.
+    /// As [`run_until`](Simulation::run_until), but abandoned if it has not returned within
+    /// `limit`, in real time, after `is_cancelled`.
     ///
     /// # Errors
     /// As in [`run_until`](Simulation::run_until) and [`stop_within`](Simulation::stop_within).
@@ -236,7 +236,7 @@ impl Simulation {
         SimulationThread::work(self, move |simulation| simulation.run_until(end))?.wait(is_cancelled, limit)
     }
 
-    /// The thread for work that may be given up.
+    /// The thread for work that may be abandoned.
     pub(crate) fn thread(&mut self) -> Result<&SimulationThread, Error> {
         match &mut self.thread {
             Some(thread) => Ok(thread),

@@ -1,4 +1,4 @@
-//! A thread that advances and stops a simulation, so that its caller can give the simulation up
+//! A thread that advances and stops a simulation, so that its caller can abandon the simulation
 //! when an activity does not return.
 
 use std::sync::Arc;
@@ -13,13 +13,13 @@ use super::clock::RunClock;
 use super::simulation::Simulation;
 use super::stall_watchdog::WatchedRun;
 
-/// Interval of the looks whether the caller wants the end.
-const LOOK: Duration = Duration::from_millis(100);
+/// Interval of the checks for a cancellation by the caller.
+const CHECK_INTERVAL: Duration = Duration::from_millis(100);
 
 /// As much as the main thread of a process usually has.
 const STACK_BYTES: usize = 8 << 20;
 
-/// The thread, which ends with this.
+/// The thread, which ends when this value is dropped.
 pub(crate) struct SimulationThread {
     jobs: Sender<SimulationJob>,
 }
@@ -48,7 +48,7 @@ impl SimulationThread {
         let run = move || {
             for SimulationJob { mut simulation, work, done } in next {
                 let result = work(&mut simulation);
-                // Without a receiver the caller has given it up.
+                // Without a receiver the caller has abandoned it.
                 let _ = done.send((simulation, result));
             }
         };
@@ -60,10 +60,10 @@ impl SimulationThread {
         Ok(SimulationThread { jobs })
     }
 
-    /// Has the thread of a simulation work on it.
+    /// Starts work on a simulation on its thread.
     ///
     /// # Errors
-    /// There is no thread.
+    /// The thread cannot be created or has ended.
     pub(crate) fn work(
         mut simulation: Simulation,
         work: impl FnOnce(&mut Simulation) -> Result<(), Error> + Send + 'static,
@@ -71,7 +71,7 @@ impl SimulationThread {
         let jobs = simulation.thread()?.jobs.clone();
         let (sender, done) = sync_channel(1);
         let wait = SimulationWait { done, watched: simulation.watched().clone() };
-        // The simulation has the thread: it is there.
+        // The simulation was not running, so it owns its thread.
         let _ = jobs.send(SimulationJob { simulation, work: Box::new(work), done: sender });
         Ok(wait)
     }
@@ -86,7 +86,7 @@ impl SimulationWait {
             if end.is_none() && is_cancelled() {
                 end = Some(clock.now() + limit);
             }
-            let patience = end.map_or(LOOK, |end: Timestamp| end.since(clock.now()));
+            let patience = end.map_or(CHECK_INTERVAL, |end: Timestamp| end.since(clock.now()));
             match self.done.recv_timeout(patience) {
                 Ok((simulation, result)) => return result.map(|()| simulation),
                 Err(RecvTimeoutError::Timeout) if end.is_none() => {}

@@ -1,6 +1,6 @@
-//! Watches a run in simulated time, whose agents share one thread: while a call does not return,
-//! nothing of the run continues. A thread beside it names the call. It only reads, so that the run
-//! stays the same.
+//! Watches a run in simulated time, whose agents share one thread: a call that does not return
+//! blocks the whole run. A second thread reports the call. It only reads, so that the run is not
+//! affected.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -18,20 +18,21 @@ use crate::observed_thread::{LastingCall, ObservedThread};
 use crate::real_time_host::spawn;
 use crate::stop_handle::StopHandle;
 
-/// Interval of its observations.
+/// Interval of the observations.
 const INTERVAL: Duration = Duration::from_millis(100);
 
 /// A call is reported after this real time, unless its agent sets another.
-const STALL: Duration = Duration::from_secs(2);
+const STALL_TIMEOUT: Duration = Duration::from_secs(2);
 
-/// The watchdog of a simulation. Its thread begins with the run, and ends with this.
+/// The watchdog of a simulation. Its thread starts with the run and ends when this value is
+/// dropped.
 pub(crate) struct StallWatchdog {
     watched: Arc<WatchedRun>,
     stopper: StopHandle,
     thread: Option<JoinHandle<()>>,
 }
 
-/// A simulated run as its watchdog sees it.
+/// The part of a simulated run that its watchdog observes.
 #[derive(Default)]
 pub(crate) struct WatchedRun {
     /// The thread that advances the run.
@@ -110,7 +111,7 @@ impl WatchedRun {
     fn limit(&self, call: &LastingCall) -> Duration {
         let name = call.call.name;
         let key = (name.robot.clone(), name.agent.clone());
-        self.limits.get(&key).copied().unwrap_or(STALL)
+        self.limits.get(&key).copied().unwrap_or(STALL_TIMEOUT)
     }
 
     /// The call in progress.
@@ -118,12 +119,12 @@ impl WatchedRun {
         locked(&self.thread).as_ref().and_then(ObservedThread::open_call)
     }
 
-    /// The call because of which the run stands still, if any.
+    /// The call that blocks the run, if any.
     pub(crate) fn stalled(&self) -> Option<LastingCall> {
         locked(&self.stalled).clone()
     }
 
-    /// The entry of the agent because of which the run stands still.
+    /// The entry of the agent that blocks the run.
     pub(crate) fn stuck_agent(&self) -> Option<AgentEntry> {
         let stalled = self.stalled()?;
         let name = stalled.call.name;

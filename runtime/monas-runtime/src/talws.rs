@@ -145,8 +145,8 @@ impl Talws {
         self
     }
 
-    /// Prepares a run in simulated time. Equal seeds give equal runs, regardless of the order in
-    /// which hosts and agents were added.
+    /// Prepares a run in simulated time. Equal seeds give equal runs, whatever the order in which
+    /// hosts and agents were added.
     ///
     /// # Errors
     /// Duplicate names of hosts, or of agents of one host; topics that contradict each other; every

@@ -244,7 +244,7 @@ fn lines_are_messages_of_the_host_they_are_about_and_the_hash_of_the_run_does_no
     assert_eq!(words, expected);
     let (_, first) = &lines[0];
     assert!(first.file.ends_with("log.rs") && first.line > 0, "{first:?}");
-    assert_eq!(lines.len(), 7, "what is written outside of the run is no host's: {lines:?}");
+    assert_eq!(lines.len(), 7, "what is written outside of the run is not a host's: {lines:?}");
 }
 
 #[test]

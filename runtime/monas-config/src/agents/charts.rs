@@ -185,7 +185,7 @@ impl AgentReader<'_> {
                     chart.constants[place].value = value;
                 }
                 _ => {
-                    let message = format!("`{text}` is no value for the constant `{name}`");
+                    let message = format!("`{text}` is not a value for the constant `{name}`");
                     let hint = format!("the model gives it {}", kind(&chart.constants[place].value));
                     self.diagnostics.push(given.error("E0344", given.text_span(), message).with_hint(hint));
                 }

@@ -1,11 +1,11 @@
-//! Whether a robot is built like another one.
+//! Comparison of a robot with the model from which it is derived.
 
 use monas_robot::{Anatomy, Camera, Joint, Link, LinkMotion};
 use yase::{Diagnostic, Span};
 
 use super::description::Description;
 
-/// How far, m and rad, numbers may differ from those of the model.
+/// Tolerance of the comparison with the model, m and rad.
 const SAME: f64 = 1e-6;
 
 /// Differences from a model that are not allowed to single robots: joints, lengths, axes, cameras,

@@ -116,7 +116,7 @@ impl fmt::Display for BuildFingerprint {
 fn fields(text: &str) -> Result<Vec<(String, String)>, String> {
     let line = |line: &str| match line.split_once(' ') {
         Some((key, value)) if is_identifier(key) => Ok((key.to_owned(), value.to_owned())),
-        _ => Err(format!("`{}` is no line of a note", line.escape_debug())),
+        _ => Err(format!("`{}` is not a line of a note", line.escape_debug())),
     };
     text.lines().map(line).collect()
 }
@@ -174,7 +174,7 @@ pub fn text_in(mut section: &[u8], is_little: bool) -> Result<&str, String> {
         let (owner, rest) = padded(rest, owner_length).ok_or_else(cut)?;
         let (text, rest) = padded(rest, text_length).ok_or_else(cut)?;
         if owner == b"Monas\0" && kind == KIND as usize {
-            return std::str::from_utf8(text).map_err(|_| "its note is no text".into());
+            return std::str::from_utf8(text).map_err(|_| "its note is not a text".into());
         }
         section = rest;
     }

@@ -218,7 +218,7 @@ impl<'a> ScenarioRun<'a> {
         let (topic, change) = match effect {
             Effect::Assign { topic, field, value } => (*topic, Some((field, value))),
             Effect::Publish { topic } => (*topic, None),
-            _ => return Err(String::from("this is no message")),
+            _ => return Err(String::from("this is not a message")),
         };
         let place = match drafts.iter().position(|(of, _)| *of == topic) {
             Some(place) => place,

@@ -105,8 +105,8 @@ fn a_setting_without_a_path_is_reported() {
     let findings = |setting: &str| Layers::new().set(setting, &Grammar::agents()).unwrap_err().to_string();
     let how = "write `agent.NAME.priority=2`: a path, `=` and a value";
     for (setting, expected) in [
-        ("agent.Motion.priority", format!("--set:1:1: error[E0340]: `agent.Motion.priority` is no path with a value ({how})")),
-        ("", format!("--set:1:1: error[E0340]: `` is no path with a value ({how})")),
+        ("agent.Motion.priority", format!("--set:1:1: error[E0340]: `agent.Motion.priority` is not a path with a value ({how})")),
+        ("", format!("--set:1:1: error[E0340]: `` is not a path with a value ({how})")),
         ("agnt.Motion.priority=2", "--set:1:1: error[E0340]: there is no setting `agnt` (did you mean `agent`?)".into()),
         ("agent=2", "--set:1:1: error[E0340]: the setting does not name the `agent` (write `agent.NAME.thread_frequency=VALUE`)".into()),
         ("agent.Motion=2", "--set:1:1: error[E0340]: the setting does not name an attribute of `agent` (write `agent.NAME.thread_frequency=VALUE`)".into()),

@@ -138,7 +138,9 @@ fn link_errors_have_positions_and_hints() {
     check_link(
         "access='access.txt'",
         send,
-        &["access.txt:2:1: error[E0334]: access: `fly` is no right: there are `publish TOPIC` and `manage`"],
+        &[
+            "access.txt:2:1: error[E0334]: access: `fly` is not a right: there are `publish TOPIC` and `manage`",
+        ],
     );
     check_link(
         "scouting='1'",
@@ -160,7 +162,7 @@ fn zenoh_in_a_program_without_it_is_reported_with_other_errors() {
         "<send topics='test/ball'/><listen>7447</listen><connect>10.0.0.2</connect>",
         &[
             "agents.xml:1:18: error[E0337]: this program was built without the transport `zenoh` (build it with `--features zenoh`, or use `transport=\"local\"` on one computer)",
-            "agents.xml:2:57: error[E0333]: `10.0.0.2` is no endpoint (`tcp/192.168.1.20:7447` or `tls/robot_2:7447`)",
+            "agents.xml:2:57: error[E0333]: `10.0.0.2` is not an endpoint (`tcp/192.168.1.20:7447` or `tls/robot_2:7447`)",
         ],
     );
     check_link(
@@ -202,7 +204,7 @@ fn zenoh_in_a_program_with_it_is_checked_as_far_as_it_can_be_before_it_is_opened
         &[
             "agents.xml:1:2: error[E0333]: the link neither listens nor connects, and discovery is off \
            (add `<listen>7447</listen>`, `<connect>tcp/192.168.1.20:7447</connect>` or `scouting=\"1\"`)",
-            "agents.xml:2:35: error[E0333]: `udp/0.0.0.0:7447` is no endpoint (`tcp/127.0.0.1:7447` or `tls/0.0.0.0:7447`; a port alone, such as `7447`, is local to this computer)",
+            "agents.xml:2:35: error[E0333]: `udp/0.0.0.0:7447` is not an endpoint (`tcp/127.0.0.1:7447` or `tls/0.0.0.0:7447`; a port alone, such as `7447`, is local to this computer)",
         ],
     );
     let certificates = "<certificates authority='team.pem' certificate='team.pem' key='team.pem'/>";

@@ -243,7 +243,7 @@ fn places_lie_in(text: &str) -> Result<(), String> {
         elements.iter().flat_map(spans_of).chain(diagnostics.iter().map(|diagnostic| diagnostic.span));
     for span in spans {
         if text.get(span.start..span.end).is_none() {
-            return Err(format!("{span:?} is no place in {text:?}: {diagnostics:?}"));
+            return Err(format!("{span:?} is not a place in {text:?}: {diagnostics:?}"));
         }
     }
     Ok(())

@@ -96,7 +96,7 @@ fn an_agent_pauses_steps_resumes_stops_and_starts() {
     made(&ask(&mut simulation, change(Action::StartAgent, "a")));
     simulation.run_until(at(2100)).unwrap();
     assert_eq!(notes.taken(), ["A start", "A", "B start", "B"]);
-    assert_eq!(simulation.statistics().agents[0].stopped, None, "it was requested, which is no failure");
+    assert_eq!(simulation.statistics().agents[0].stopped, None, "it was requested, which is not a failure");
 }
 
 #[test]
