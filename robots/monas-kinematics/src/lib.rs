@@ -1,8 +1,8 @@
 //! Forward kinematics: the poses of a robot's links and its centre of mass, from its joint angles.
 //!
-//! A [`LinkTree`] is made of the links of an [`Anatomy`], once. Frames are those of the links; the
-//! first one is the torso. The functions are of `libm`, so that results are equal on all machines.
-//! The crate is one of its own, since programs without joints do without `nalgebra`.
+//! A [`LinkTree`] is built once from the links of an [`Anatomy`]. Frames are those of the links;
+//! the first link is the torso. Trigonometric functions come from `libm`, so that results are equal
+//! on all machines. It is a separate crate, since programs without joints do not need `nalgebra`.
 //!
 //! ```
 //! use std::time::Duration;

@@ -79,7 +79,7 @@ pub enum BodyEnvironment {
 pub enum Capability {
     /// A skill.
     Skill(Skill),
-    /// To deliver, or to obey, the messages of a topic with this path.
+    /// Publishing or executing the messages of the topic with this path.
     Topic(&'static str),
 }
 

@@ -18,7 +18,7 @@ pub struct BodyOption {
 /// The values of an option.
 #[derive(Clone, Copy, Debug)]
 pub enum OptionKind {
-    /// Any text that is not empty.
+    /// A non-empty text.
     Text,
     /// Letters, digits, `-` and `_`.
     Name,

@@ -115,7 +115,7 @@ fn check_joints(robot: &dyn Robot, joints: Option<&Joints>, now: Timestamp) {
     assert!(*measured_at <= now.as_nanos(), "the joints were measured in the future: {joints:?}");
     for values in [positions, velocities, temperatures, currents, stiffnesses] {
         assert_eq!(values.len(), anatomy.joints.len(), "a value for each joint: {joints:?}");
-        assert!(values.iter().all(|value| value.is_finite()), "a joint is no number: {joints:?}");
+        assert!(values.iter().all(|value| value.is_finite()), "a joint is not a number: {joints:?}");
     }
     for (joint, &position) in anatomy.joints.iter().zip(positions) {
         let beyond = (position - joint.limits.clamp(position)).abs();
@@ -189,7 +189,7 @@ fn sense(robot: &mut dyn Robot, now: Timestamp, percepts: &mut Percepts) {
         sensors.odometry_y,
         sensors.odometry_turn,
     ];
-    assert!(felt.iter().all(|value| value.is_finite()), "a sensor is no number: {sensors:?}");
+    assert!(felt.iter().all(|value| value.is_finite()), "a sensor is not a number: {sensors:?}");
     let has_result = sensors.skill_result() != SkillResult::NoResult;
     assert_eq!(sensors.skill_done != 0, has_result, "the end of a skill has a result: {sensors:?}");
     check_joints(robot, percepts.joints.as_ref(), now);

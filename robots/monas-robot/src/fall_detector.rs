@@ -1,14 +1,14 @@
-//! Falls, found from the inclination of the torso.
+//! Detection of falls from the inclination of the torso.
 
-/// A torso that is more inclined than this has fallen, rad.
+/// Inclination of the torso above which the body has fallen, rad.
 const LYING: f64 = 1.0;
-/// A torso that is less inclined than this is upright, rad.
+/// Inclination of the torso below which the body is upright, rad.
 const UPRIGHT: f64 = 0.4;
 
-/// Whether a body lies, found from the inclination of its torso as its inertial unit measures it.
+/// Detects whether a body lies, from the inclination of its torso as its inertial unit measures it.
 ///
 /// A body has fallen from an inclination of 1 rad on, and counts as fallen until the inclination is
-/// below 0.4 rad, so that noise does not let the state change to and fro.
+/// below 0.4 rad, so that noise does not make the state oscillate.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub struct FallDetector {
     tilt: f64,

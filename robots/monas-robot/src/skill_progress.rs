@@ -1,4 +1,4 @@
-//! The numbers of the skills that a body is commanded.
+//! The numbers of the commanded skills of a body.
 
 use crate::SkillResult;
 
@@ -66,7 +66,7 @@ mod tests {
         assert!(skills.command(1) && !skills.command(2));
         assert_eq!(skills.done(), (2, SkillResult::Refused));
         assert!(!skills.command(0));
-        assert_eq!(skills.done(), (2, SkillResult::Refused), "zero is no skill that could be refused");
+        assert_eq!(skills.done(), (2, SkillResult::Refused), "zero is not a skill that could be refused");
         skills.end(SkillResult::Interrupted);
         assert_eq!(skills.done(), (1, SkillResult::Interrupted));
         assert!(skills.command(3));

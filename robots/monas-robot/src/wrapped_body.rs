@@ -12,15 +12,15 @@ use crate::{Actuators, Anatomy, Error, FieldColours, JointCommands, Leds, Limits
 /// Disturbances between a body and its robot's software. The default has none.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub struct Disturbances {
-    /// How much later commands in the plane take effect.
+    /// The delay of commands in the plane.
     pub delay: Duration,
-    /// Standard deviation of what is added to measured angles and bearings, rad.
+    /// Standard deviation of the noise added to measured angles and bearings, rad.
     pub noise: f64,
     /// The probability with which a set of sightings or images or a radio message is lost.
     pub loss: f64,
 }
 
-/// A body around which commands are limited and delayed, and percepts are noisy and get lost.
+/// A wrapper around a body that limits and delays commands, adds noise to percepts and drops some.
 ///
 /// The same seed gives the same disturbances. Commands in the plane beyond the limits of the
 /// anatomy are clamped here.
@@ -65,7 +65,7 @@ impl WrappedBody {
         limited
     }
 
-    /// Hands over the commands whose time has come.
+    /// Passes on the commands that are due.
     fn deliver(&mut self, now: Timestamp) -> Result<(), Error> {
         while let Some((at, actuators)) = self.delayed.front().copied()
             && at <= now
@@ -158,7 +158,7 @@ impl Robot for WrappedBody {
         self.body.deliver_images(width)
     }
 
-    /// Takes effect at once, and for good.
+    /// Takes effect at once, and permanently.
     fn rest(&mut self, now: Timestamp) -> Result<(), Error> {
         self.rests = true;
         self.delayed.clear();

@@ -9,9 +9,9 @@ use monas_robot::{Error, ErrorKind};
 
 use crate::frame::Frame;
 
-/// The longest wait for an image, after which a thread looks whether it should end.
+/// The longest wait for an image before a thread checks whether it should end.
 const WAIT: Duration = Duration::from_millis(200);
-/// The time without an image after which a camera counts as gone.
+/// The time without an image after which a camera counts as lost.
 const LOST_AFTER: Duration = Duration::from_secs(2);
 /// The pause between two attempts to open a camera.
 const RETRY: Duration = Duration::from_secs(1);
@@ -21,14 +21,14 @@ pub(crate) trait FrameSource {
     /// The next image. None if there is none within the time, or if it is damaged.
     ///
     /// # Errors
-    /// The camera is gone.
+    /// The camera is lost.
     fn next_frame(&mut self, wait: Duration) -> Result<Option<Frame>>;
 }
 
 /// A camera whose images a thread takes.
 ///
-/// The thread opens the camera, again and again if it is missing or gone, and replaces an image
-/// that has not been fetched by the next one.
+/// The thread opens the camera, retries while it is missing or lost, and replaces an image that has
+/// not been fetched by the next one.
 pub(crate) struct CameraThread {
     shared: Arc<SharedFrame>,
     thread: Option<JoinHandle<()>>,
@@ -96,7 +96,7 @@ impl CameraThread {
     /// Starts the thread of the camera that `open` opens.
     ///
     /// # Errors
-    /// The system starts no thread.
+    /// The system cannot create a thread.
     pub(crate) fn start<Source: FrameSource>(
         name: &'static str,
         open: impl Fn() -> Result<Source> + Send + 'static,
@@ -127,7 +127,7 @@ impl Drop for CameraThread {
     }
 }
 
-/// The clock in which drivers tell the time of an image.
+/// The clock by which drivers stamp images.
 pub(crate) fn monotonic_time() -> Duration {
     let now = rustix::time::clock_gettime(rustix::time::ClockId::Monotonic);
     Duration::new(now.tv_sec as u64, now.tv_nsec as u32)
@@ -141,7 +141,7 @@ mod tests {
 
     use super::*;
 
-    /// A camera that delivers what it receives, and is gone when the other end is.
+    /// A camera that delivers what it receives, and is lost when the other end closes.
     struct Scripted(Receiver<Option<Frame>>);
 
     impl FrameSource for Scripted {
@@ -158,7 +158,7 @@ mod tests {
         SharedFrame { state: Mutex::default(), changed: Condvar::new() }
     }
 
-    /// Runs until the source is gone; returns why it ended.
+    /// Runs until the source is lost; returns why it ended.
     fn run(shared: &SharedFrame, script: impl Fn(&Sender<Option<Frame>>)) -> String {
         let (sender, receiver) = channel();
         script(&sender);
@@ -166,7 +166,7 @@ mod tests {
         run_at(shared, 0, receiver)
     }
 
-    /// As `run`; between two looks at the clock pass so many milliseconds.
+    /// As `run`, with this many milliseconds between two readings of the clock.
     fn run_at(shared: &SharedFrame, millis: u64, receiver: Receiver<Option<Frame>>) -> String {
         let time = AtomicU64::new(0);
         let clock = || Duration::from_millis(time.fetch_add(millis, Ordering::Relaxed));

@@ -46,7 +46,7 @@ impl Default for CameraPlaces {
 }
 
 impl CameraPlaces {
-    /// From the options of a configuration.
+    /// Reads the options of a configuration.
     pub(crate) fn of(options: &BTreeMap<String, String>) -> CameraPlaces {
         let usual = CameraPlaces::default();
         CameraPlaces {
@@ -60,7 +60,8 @@ impl CameraPlaces {
         }
     }
 
-    /// The cameras that cannot be used now: why, with the option that names another device.
+    /// The cameras that cannot be used now, each with the reason and the option that names another
+    /// device.
     pub(crate) fn missing(&self) -> Vec<String> {
         let cameras = [("upper", TOP, &self.top), ("lower", BOTTOM, &self.bottom)];
         let opened = cameras.into_iter().map(|(name, option, path)| (name, option, open(path)));
@@ -75,7 +76,7 @@ impl CameraPlaces {
 /// Checks the width of images that a configuration asks for.
 ///
 /// # Errors
-/// The cameras have another one.
+/// The cameras deliver another width.
 pub(crate) fn check_width(width: Option<u32>) -> Result<(), BodyFault> {
     match width {
         Some(width) if width as usize != WIDTH => {
@@ -121,11 +122,11 @@ pub(crate) struct Cameras {
 }
 
 impl Cameras {
-    /// Starts a thread for each camera. A camera that is missing is reported in the log, and is
-    /// used when it is there.
+    /// Starts a thread for each camera. A missing camera is reported in the log, and used as soon
+    /// as it appears.
     ///
     /// # Errors
-    /// The system starts no thread.
+    /// The system cannot create a thread.
     pub(crate) fn start(places: &CameraPlaces) -> Result<Cameras, Error> {
         let thread = |name, path: &Path, is_turned| {
             let path = path.to_owned();
@@ -189,7 +190,7 @@ struct FramePair {
     cameras: [NewestFrame; 2],
 }
 
-/// The newest image of a camera that is not in a message yet.
+/// The newest image of a camera that has not been put into a message.
 #[derive(Default)]
 struct NewestFrame {
     frame: Option<Frame>,
@@ -210,7 +211,7 @@ impl NewestFrame {
         self.frame = Some(frame);
     }
 
-    /// Whether the camera has delivered lately.
+    /// Whether the camera has delivered an image recently.
     fn is_silent(&self, now: Duration) -> bool {
         self.last
             .is_none_or(|last| now.saturating_sub(last) > SILENT * self.period.unwrap_or(PERIOD).max(PERIOD))

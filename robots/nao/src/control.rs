@@ -18,27 +18,27 @@ use crate::walk::{SteppingWalk, WalkEngine, WalkVelocity, displacement};
 
 /// Stiffness of the joints in motion.
 const STIFFNESS: f64 = 0.8;
-/// The time in which the joints become stiff and the robot goes to its stand, s.
+/// The time in which the joints become stiff and the robot moves into its stand, s.
 const STIFFENING: f64 = 1.0;
 /// The time in which the joints lose their stiffness, s.
 const RELAXING: f64 = 0.5;
-/// A joint that is farther than this from the last pose of a skill has not performed it, rad.
+/// Largest distance of a joint from the last pose of a skill that has been performed, rad.
 const POSE_TOLERANCE: f64 = 0.3;
-/// Less weight than this on both soles, kg, and the feet are off the ground.
+/// Least weight on both soles of a robot that stands on the ground, kg.
 const LEAST_WEIGHT: f64 = 0.5;
 
 /// The motion of the joints.
 #[derive(Debug)]
 enum BodyState {
-    /// They do nothing until the first sensors arrive.
+    /// Slack until the first sensor packet arrives.
     Waiting,
-    /// They become stiff on the way to the stand; the part of the time that is over.
+    /// Becoming stiff on the way to the stand; the elapsed fraction of the time.
     Stiffening { motion: Motion, elapsed: f64 },
-    /// They follow walk, skill and commands.
+    /// Following walk, skill and commands.
     Active { skill: Option<(Skill, Motion)> },
-    /// They go to the seat.
+    /// Sitting down.
     SittingDown { motion: Motion },
-    /// They lose their stiffness, for good.
+    /// Losing their stiffness permanently.
     Relaxing { elapsed: f64 },
 }
 
@@ -64,7 +64,8 @@ pub(crate) struct NaoControl {
 }
 
 impl NaoControl {
-    /// With the files that the options of a configuration name, otherwise the built-in ones.
+    /// Creates the control with the files that the options of a configuration name, otherwise the
+    /// built-in ones.
     ///
     /// # Errors
     /// A file cannot be read or has errors; the message has its first one.
@@ -135,7 +136,7 @@ impl NaoControl {
                 let limits = self.anatomy.joints[joint].limits;
                 (limits.clamp(self.angles[joint]), stiffness)
             });
-            // A joint without stiffness is given the angle that it has.
+            // The target of a joint without stiffness is its measured angle.
             self.packet.position[joint] = if is_echo { self.sensors.position[joint] } else { target as f32 };
             self.packet.stiffness[joint] = stiffness as f32;
         }
@@ -143,8 +144,8 @@ impl NaoControl {
         &self.packet
     }
 
-    /// Advances the motion by one cycle; returns the stiffness, and whether the joints only repeat
-    /// where they are.
+    /// Advances the motion by one cycle; returns the stiffness, and whether the joints hold their
+    /// measured angles.
     fn advance(&mut self) -> (f64, bool) {
         let falls = self.falls;
         let seconds = CYCLE_SECONDS;
@@ -244,7 +245,7 @@ impl NaoControl {
         leds::merge(&mut self.leds, leds);
     }
 
-    /// Sits down and switches off the stiffness, for good.
+    /// Sits down and switches off the stiffness permanently.
     pub(crate) fn rest(&mut self) {
         if self.rests() {
             return;
@@ -285,7 +286,7 @@ impl NaoControl {
         }
     }
 
-    /// Writes what was measured; odometry since the last call.
+    /// Writes the measurements, with the odometry since the last call.
     pub(crate) fn percepts(&mut self, measured_at: Timestamp, percepts: &mut Percepts) {
         let measured_at = measured_at.as_nanos();
         let packet = &self.sensors;
@@ -316,7 +317,8 @@ impl NaoControl {
         self.write_joints(measured_at, percepts.joints.get_or_insert_default());
         let packet = &self.sensors;
         let [gyro_x, gyro_y, gyro_z] = packet.gyroscope.map(f64::from);
-        // The robot counts gravity, this message what carries it.
+        // The robot reports gravity, the message the specific force that supports it: the sign
+        // differs.
         let [acceleration_x, acceleration_y, acceleration_z] =
             packet.accelerometer.map(|value| -f64::from(value));
         percepts.inertial = Some(Inertial {

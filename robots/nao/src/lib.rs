@@ -18,7 +18,7 @@
 //! If a simulation stands in for the robot, it offers all three on sockets of their own, beside
 //! LoLA's; the camera's delivers objects, or images if the configuration asks for them. On a robot
 //! referee and radio are missing. The walk engine and the motions have no feedback of balance: they
-//! are made for the embedded field. Nothing of this has been tried on a robot.
+//! are made for the embedded field. None of this has been tested on a robot.
 //!
 //! ```
 //! use monas_nao::lola::{Decoded, SENSOR_BYTES, SensorPacket};
@@ -120,7 +120,7 @@ fn has_cameras(settings: &BodySettings, surroundings: BodyEnvironment) -> bool {
     surroundings == BodyEnvironment::Own && !side_channels::are_offered(Path::new(lola))
 }
 
-/// Opens a Nao: in a simulated world over its body there, else at a socket.
+/// Opens a Nao: on the body of a simulated world if there is one, otherwise at a socket.
 fn open(site: BodySite) -> Result<Box<dyn Robot>, monas_robot::Error> {
     let control = control::NaoControl::of(&site.options)?;
     match site {

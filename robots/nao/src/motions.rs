@@ -1,8 +1,8 @@
 //! Skills as motions of the joints: sequences of poses, from files.
 //!
 //! The files are [special actions](monas_config::poses). Those of a skill that has sides are for
-//! the left one: the right one is the mirror image. When a motion is over, and whether it has done
-//! what it is for, follows from the skill and not from the file.
+//! the left one: the right one is the mirror image. When a motion is over, and whether it was
+//! successful, follows from the skill and not from the file.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -34,7 +34,7 @@ pub(crate) struct SpecialActions {
 }
 
 impl SpecialActions {
-    /// Those of the files that the options of a configuration name, otherwise the built-in ones.
+    /// Reads the files that the options of a configuration name, otherwise the built-in ones.
     ///
     /// # Errors
     /// A file cannot be read or has errors; the message has its first one.
@@ -76,7 +76,7 @@ fn checked((poses, diagnostics): (Option<Vec<JointPose>>, Vec<Diagnostic>)) -> R
     poses.ok_or_else(|| Error::new(ErrorKind::Configuration, message().unwrap_or_default()))
 }
 
-/// A pose of all joints; the time that the way to it takes, s, and the stiffness on it.
+/// A pose of all joints, the duration of the motion to it, s, and the stiffness during this motion.
 #[derive(Clone, Copy, Debug)]
 struct KeyFrame {
     seconds: f64,
@@ -95,12 +95,12 @@ enum MotionEnd {
     WhenLying { at_most: f64 },
 }
 
-/// A motion that is under way.
+/// A motion in progress.
 #[derive(Clone, Debug)]
 pub(crate) struct Motion {
     frames: Vec<KeyFrame>,
     end: MotionEnd,
-    /// The joints that it moves; others do what walk and head commands say.
+    /// The joints that it moves; the others follow the walk and the head commands.
     moves: [bool; JOINTS],
     from: JointAngles,
     frame: usize,
@@ -108,8 +108,8 @@ pub(crate) struct Motion {
     stiffness: Option<f64>,
 }
 
-/// How the arms hang while standing and walking: shoulder pitch and roll, elbow yaw and roll of the
-/// left arm.
+/// The pose of the left arm while standing and walking: shoulder pitch and roll, elbow yaw and
+/// roll.
 const LEFT_ARM: [f64; 4] = [1.5, 0.2, -1.2, -0.4];
 
 /// The pose in which the robot stands: both feet below the hips, the torso upright.

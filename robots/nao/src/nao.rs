@@ -51,7 +51,7 @@ struct SharedControl {
 struct ControlState {
     control: NaoControl,
     is_connected: bool,
-    /// A packet has arrived since the last call of `sense`.
+    /// Whether a packet has arrived since the last call of `sense`.
     is_new: bool,
     /// Cycles since the last call of `sense`; none before the first, which may come long after the
     /// body is opened: a run begins when all its links are connected.
@@ -101,7 +101,7 @@ impl Nao {
         let (state, _) = waited.unwrap_or_else(PoisonError::into_inner);
         let (answers, anatomy) = (state.is_new, state.control.anatomy().clone());
         drop(state);
-        // From here on an error ends the thread, by dropping this.
+        // From here on an error ends the thread, because it drops this value.
         let mut nao = Nao {
             anatomy,
             shared,
@@ -120,7 +120,7 @@ impl Nao {
         Ok(nao)
     }
 
-    /// The body with its cameras in other places than those of a Nao V6. They are opened by
+    /// The body with other camera devices than those of a Nao V6. They are opened by
     /// [`deliver_images`](Robot::deliver_images), unless a simulation delivers images.
     #[must_use]
     pub fn with_cameras(mut self, camera_places: CameraPlaces) -> Nao {
@@ -134,7 +134,7 @@ impl SharedControl {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Connects, serves the connection, and again, until the body is dropped.
+    /// Connects and serves the connection, repeatedly, until the body is dropped.
     fn run(&self, path: &Path) {
         while !self.lock().has_ended {
             let served = Socket::connect_blocking(path).and_then(|socket| self.serve(socket));
@@ -205,8 +205,8 @@ impl Robot for Nao {
         Ok(())
     }
 
-    /// Opens the cameras. A simulation that stands in for the robot delivers images if it has been
-    /// asked to.
+    /// Opens the cameras. A simulation in place of the robot delivers images if it was configured
+    /// to.
     fn deliver_images(&mut self, width: Option<u32>) -> Result<(), Error> {
         if self.channels.is_none() {
             cameras::check_width(width)?;
@@ -260,7 +260,7 @@ mod tests {
     use super::*;
     use crate::lola::ActuatorPacket;
 
-    /// Sends sensors until the client has gone. Returns whether it has.
+    /// Sends sensors until the client has disconnected. Returns whether it has.
     fn serve(mut lola: Socket) -> bool {
         let (mut bytes, mut actuators) = (Vec::new(), ActuatorPacket::default());
         let (_sender, pause) = mpsc::channel::<()>();

@@ -8,7 +8,7 @@ use std::time::Duration;
 use crate::camera_thread::FrameSource;
 use crate::frame::Frame;
 
-/// A camera, of which there is none.
+/// A camera; no value of this type exists.
 pub(crate) struct VideoDevice(Infallible);
 
 impl VideoDevice {
@@ -21,7 +21,7 @@ impl VideoDevice {
     }
 }
 
-/// A camera that takes images, of which there is none.
+/// A camera that takes images; no value of this type exists.
 pub(crate) struct VideoStream(Infallible);
 
 impl FrameSource for VideoStream {

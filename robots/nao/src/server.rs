@@ -1,11 +1,10 @@
 //! A LoLA server over a simulated body.
 //!
 //! The body moves in the plane; the server gives it joints. Motors follow the targets that a client
-//! sends. From the angles alone, by the kinematics of the legs, follows what the body does: the
+//! sends. The motion of the body follows from the angles alone, by the kinematics of the legs: the
 //! foot on the ground stands still, so that the torso moves; a torso that leans out over its foot
 //! falls; a foot that swings back begins a kick; a lying body that folds its legs stands up; a body
-//! whose motors have lost their stiffness sits down. There is no other way from the client to the
-//! body.
+//! whose motors have lost their stiffness sits down. The client has no other access to the body.
 
 mod joint_motion;
 
@@ -78,12 +77,12 @@ impl LolaServer {
         self.percepts.sensors
     }
 
-    /// Has the body deliver images in place of sightings, of a width or of its usual one.
+    /// Makes the body deliver images in place of sightings, of the given width or of its usual one.
     pub(crate) fn deliver_images(&mut self, width: Option<u32>) -> Result<(), Error> {
         self.body.deliver_images(width)
     }
 
-    /// Sends more of images that were sent in part. Returns whether there was a rest.
+    /// Continues to send images that were sent partially. Returns whether anything was pending.
     pub(crate) fn send_rest_of_images(&mut self) -> Result<bool, Error> {
         Ok(self.channels.camera.flush()?)
     }
@@ -101,8 +100,8 @@ impl LolaServer {
     /// One cycle: the body does what the joints do, then its sensors are sent.
     ///
     /// # Errors
-    /// The body fails, or a client sends what is no actuator packet. A client that is not there is
-    /// no error: the joints keep their targets.
+    /// The body fails, or a client sends what is not an actuator packet. A client that is not there
+    /// is no error: the joints keep their targets.
     pub fn step(&mut self, now: Timestamp) -> Result<(), Error> {
         let LolaServer { lola, actuators, channels, body, .. } = self;
         absent(lola.receive(|bytes| actuators.decode(bytes)).map(drop))?;

@@ -8,7 +8,7 @@ use narukom::Timestamp;
 use crate::error::Error;
 use crate::socket::{MessageSocket, Socket};
 
-/// A message without content, for the direction in which nothing is sent.
+/// An empty message, for the unused direction.
 type Nothing = ();
 
 /// The output of the simulated cameras: objects in place of images, or images.
@@ -38,9 +38,10 @@ impl SimulatedView {
 
 /// The simulation's ends of the sockets.
 ///
-/// LoLA carries neither images nor what the referee says nor the radio of the team. A simulation
-/// offers three more sockets: on the first it sends what the cameras would show; on the second the
-/// announcements of the referee; on the third the radio messages of the team in both directions.
+/// LoLA carries neither images, nor announcements of the referee, nor the radio of the team. A
+/// simulation offers three more sockets: on the first it sends what the cameras would see; on the
+/// second the announcements of the referee; on the third the radio messages of the team in both
+/// directions.
 pub(crate) struct SimulatedChannels {
     pub(crate) camera: MessageSocket<SimulatedView, Nothing>,
     pub(crate) referee: MessageSocket<Announcement, Nothing>,
@@ -82,8 +83,8 @@ impl SimulatedChannels {
 }
 
 impl RobotChannels {
-    /// Connects beside the socket of LoLA. On a robot there are no such sockets, or those of a
-    /// simulation that was killed, and no channels.
+    /// Connects beside the socket of LoLA. On a robot these sockets do not exist, or are left over
+    /// from a simulation that was killed; then there are no channels.
     pub(crate) fn connect(lola: &Path) -> Result<Option<RobotChannels>, Error> {
         if !are_offered(lola) {
             return Ok(None);

@@ -12,8 +12,8 @@ use prost::Message;
 use crate::error::Error;
 use crate::lola::Decoded;
 
-/// The greatest number of bytes that are kept of an incomplete packet or message: more than two
-/// images of 640 by 480 pixels have.
+/// The most bytes that are kept of an incomplete packet or message: more than two images of 640 by
+/// 480 pixels.
 const MOST_BYTES: usize = 1 << 21;
 
 /// A connection on which nothing arrives for this time has ended.
@@ -24,13 +24,13 @@ pub(crate) struct Socket {
     listener: Option<Listener>,
     stream: Option<UnixStream>,
     received: Vec<u8>,
-    /// The rest of what was sent in part.
+    /// The unsent rest of a message that was sent partially.
     unsent: Vec<u8>,
     /// Reading waits for bytes.
     waits: bool,
 }
 
-/// A listener, whose file ends with it.
+/// A listener, whose file is removed with it.
 struct Listener {
     listener: UnixListener,
     path: PathBuf,
@@ -39,7 +39,7 @@ struct Listener {
 }
 
 impl Listener {
-    /// Listens at a path. A file that is there is replaced.
+    /// Listens at a path. An existing file is replaced.
     fn bind(path: &Path) -> std::io::Result<Listener> {
         if path.exists() {
             std::fs::remove_file(path)?;
@@ -81,8 +81,7 @@ impl Socket {
         Socket::connected(UnixStream::connect(path).map_err(|error| unanswered(path, &error))?)
     }
 
-    /// Connects to a path; none if no process listens there. One that was killed leaves its
-    /// file.
+    /// Connects to a path; none if no process listens there. A killed process leaves its file.
     pub(crate) fn connect_if_served(path: &Path) -> Result<Option<Socket>, Error> {
         match UnixStream::connect(path) {
             Ok(stream) => Socket::connected(stream).map(Some),
@@ -103,7 +102,7 @@ impl Socket {
         Ok(Socket { waits: true, ..socket })
     }
 
-    /// Listens at a path for one connection at a time. A file that is there is replaced.
+    /// Listens at a path for one connection at a time. An existing file is replaced.
     pub(crate) fn listen(path: &Path) -> Result<Socket, Error> {
         let listener = Listener::bind(path)
             .map_err(|error| Error::disconnected(format!("cannot listen at {}: {error}", path.display())))?;
@@ -126,7 +125,7 @@ impl Socket {
         self.stream.is_some()
     }
 
-    /// Sends all bytes, or none if the other end has not read the earlier ones, or is not there.
+    /// Sends all bytes; none if the other end is not connected or has not read the earlier ones.
     pub(crate) fn send(&mut self, bytes: &[u8]) -> Result<(), Error> {
         self.accept();
         self.flush()?;
@@ -137,7 +136,7 @@ impl Socket {
         Ok(())
     }
 
-    /// Sends more of the rest of what was sent in part, as far as the other end has read.
+    /// Continues to send pending bytes, as far as the other end has read.
     pub(crate) fn flush(&mut self) -> Result<(), Error> {
         while let Some(stream) = &mut self.stream
             && !self.unsent.is_empty()
@@ -187,7 +186,7 @@ impl Socket {
         }
     }
 
-    /// Forgets a connection. A listener waits for the next one, and that is no error.
+    /// Drops a connection. A listener waits for the next one, which is not an error.
     fn closed(&mut self, why: &str) -> Error {
         (self.stream, self.unsent) = (None, Vec::new());
         Error::disconnected(format!("the connection has ended: {why}"))
@@ -242,7 +241,7 @@ impl<Sent: Message, Received: Message + Default> MessageSocket<Sent, Received> {
         MessageSocket { socket, bytes: Vec::new(), messages: PhantomData }
     }
 
-    /// Sends a message; it is lost if the other end is not there or does not read.
+    /// Sends a message; it is lost if the other end is not connected or does not read.
     pub(crate) fn send(&mut self, message: &Sent) -> Result<(), Error> {
         self.bytes.clear();
         self.bytes.extend_from_slice(&(message.encoded_len() as u32).to_le_bytes());
@@ -250,7 +249,7 @@ impl<Sent: Message, Received: Message + Default> MessageSocket<Sent, Received> {
         self.socket.send(&self.bytes)
     }
 
-    /// Sends more of a message that was sent in part. Returns whether there was a rest.
+    /// Continues to send a message that was sent partially. Returns whether anything was pending.
     pub(crate) fn flush(&mut self) -> Result<bool, Error> {
         let has_rest = !self.socket.unsent.is_empty();
         self.socket.flush().map(|()| has_rest)

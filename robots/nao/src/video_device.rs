@@ -1,9 +1,9 @@
 //! Cameras through Video4Linux: the few calls of its streaming interface that a Nao needs.
 //!
-//! The interface is one of the kernel, in C structures that `ioctl` fills. Crates for it either
-//! generate these from C headers with libclang, or, in pure Rust, do not hand out the time at which
-//! an image was taken, which is what relates it to the joints. So the structures are here, for
-//! 64-bit systems, whose layout the numbers of the calls contain.
+//! The interface of the kernel consists of C structures that `ioctl` fills. Crates for it either
+//! generate these from C headers with libclang, or, in pure Rust, do not expose the time at which
+//! an image was taken, which relates it to the joints. So the structures are here, for 64-bit
+//! systems, whose layout the numbers of the calls contain.
 #![allow(unsafe_code, reason = "the kernel fills structures and maps memory by calls that are unsafe")]
 
 use std::fs::{File, OpenOptions};
@@ -141,7 +141,7 @@ impl VideoDevice {
     /// Opens a camera, and sets its format and rate.
     ///
     /// # Errors
-    /// There is no such file, it may not be opened, it is no camera, or one without the format.
+    /// There is no such file, it may not be opened, it is not a camera, or one without the format.
     pub(crate) fn open(path: &Path) -> Result<VideoDevice> {
         let flags = rustix::fs::OFlags::NONBLOCK.bits() as i32;
         let device = OpenOptions::new().read(true).write(true).custom_flags(flags).open(path)?;

@@ -50,7 +50,7 @@ const ACCELERATION: (f64, f64) = (0.6, 4.0);
 const TOES_RETURN: f64 = 2.0;
 
 /// A walk of equal steps. The foot on the ground moves straight under the torso, the other swings
-/// to where its own time on the ground has to begin.
+/// to the position at which its own stance phase begins.
 ///
 /// The torso stays upright at a constant height. The engine has no feedback of balance: it walks on
 /// the embedded field, where the torso keeps its balance by the field's rules. A real Nao needs an
@@ -60,7 +60,7 @@ pub struct SteppingWalk {
     velocity: WalkVelocity,
     /// The foot on the ground.
     support: Side,
-    /// Cycles of the step that are over.
+    /// Elapsed cycles of the step.
     cycle: u32,
     moving: bool,
     /// Foot positions and headings in the plane under the torso, left and right.
@@ -172,7 +172,7 @@ impl SteppingWalk {
         LIFT * libm::sin(std::f64::consts::PI * part)
     }
 
-    /// The feet change their parts; the walk ends once the feet stand as in a stand.
+    /// The feet swap roles; the walk ends once both feet are in their positions of a stand.
     fn end_step(&mut self) {
         self.support = self.support.other();
         let near = |foot: &PlanarPose, stance: &PlanarPose| {
@@ -197,7 +197,7 @@ impl SteppingWalk {
             Isometry3::from_parts(Translation3::new(x, y, height - TORSO_HEIGHT), yaw(heading))
         };
         let support = pose(self.support);
-        // The foot on the ground decides over the shared joint.
+        // The foot on the ground determines the shared joint.
         kinematics::place_foot_and_toes(self.support, &support, angles);
         let shared = angles[crate::anatomy::NaoJoint::LHipYawPitch as usize];
         kinematics::place_foot(swinging, &pose(swinging), shared, angles);

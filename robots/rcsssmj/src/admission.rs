@@ -1,11 +1,11 @@
 //! Joining a server that was just started, so that each run begins with the same state.
 //!
-//! A server without agents makes its cycles as fast as it can. In which one an agent joins depends
-//! on the computer, and with it the time of the server and the last digits of its physics. So
-//! another robot joins first and holds the server in lockstep until a certain cycle. Then the
-//! player joins, the other robot leaves, and the ball is placed anew. With the robot that leaves
-//! the server compiles its world again and forgets what its solver knew; the player goes to its
-//! place in the cycle after that. The states of two runs are equal from there on, bit for bit.
+//! A server without agents runs its cycles as fast as it can. The cycle in which an agent joins
+//! depends on the computer, and so do the server's time and the last digits of its physics.
+//! Therefore another robot, the holder, joins first and keeps the server in lockstep until a fixed
+//! cycle. Then the player joins, the holder leaves, and the ball is placed anew. When the holder
+//! leaves, the server recompiles its world and discards the state of its solver; the player goes to
+//! its place in the cycle after that. The states of two runs are equal from there on, bit for bit.
 
 use std::time::Duration;
 
@@ -21,12 +21,12 @@ use crate::server::Server;
 /// The cycle whose percepts the player receives first. Monitors receive the state after a cycle
 /// with an odd number.
 const FIRST: u64 = 1001;
-/// How often a server is started that was not joined in time.
+/// The number of attempts to start a server and to join it in time.
 const ATTEMPTS: u32 = 10;
-/// How long the server has to come to its waiting for an agent, and to take in another one
-/// meanwhile. On a busy computer each further attempt gives it as much time more.
+/// The time for the server to reach the point where it waits for an agent, and to admit another
+/// agent meanwhile. Each further attempt adds this time, for busy computers.
 const TAKING_IN: Duration = Duration::from_millis(60);
-/// How long it has to send what it has computed already.
+/// The time for the server to send what it has already computed.
 const SENDING: Duration = Duration::from_secs(2);
 /// The middle of a ball on the centre spot, m.
 const CENTRE: [f64; 3] = [0.0, 0.0, 0.11];
@@ -41,7 +41,7 @@ impl Admission {
     /// Starts a server and joins it.
     ///
     /// # Errors
-    /// The server cannot be started, or it is never joined in time.
+    /// The server cannot be started, or no attempt joins it in time.
     pub(crate) fn new(options: &Options) -> Result<Admission, Error> {
         for attempt in 1..=ATTEMPTS {
             let mut server = Server::start(options.server.as_deref(), true)?;
@@ -65,7 +65,7 @@ fn join(
     options: &Options,
     taking_in: Duration,
 ) -> Result<Option<Connection>, Error> {
-    // A number beside the player's.
+    // A player number other than the player's.
     let number = if options.number > 1 { options.number - 1 } else { 2 };
     init(&mut holder, options, number)?;
     let mut cycle = holder.receive(|message| cycle(message, options.robot))?;
@@ -89,7 +89,7 @@ fn join(
     if self::cycle(message, options.robot)? != FIRST {
         return Ok(None);
     }
-    // The server waits for the answers now, and takes up in the next cycle what arrives.
+    // The server now waits for the answers, and processes what arrives in the next cycle.
     monitor.wait_beyond(time(FIRST))?;
     holder.finish()?;
     monitor.send(&Command::PlaceBall { at: CENTRE, velocity: [0.0; 3] })?;
@@ -103,7 +103,7 @@ fn init(agent: &mut Connection, options: &Options, number: u32) -> Result<(), Er
     agent.send(message.as_bytes())
 }
 
-/// Lets the server make a cycle; returns its number.
+/// Lets the server run one cycle; returns the number of the cycle.
 fn hold(agent: &mut Connection, robot: &Humanoid) -> Result<u64, Error> {
     let mut message = Effectors::default();
     message.synchronize();
@@ -115,7 +115,7 @@ fn hold(agent: &mut Connection, robot: &Humanoid) -> Result<u64, Error> {
 fn cycle(message: &[u8], robot: &Humanoid) -> Result<u64, Error> {
     let mut percept = Percept::default();
     percept.decode(message, robot)?;
-    // The time is cut off after two digits.
+    // The time is truncated to two decimals.
     Ok(((percept.time + 0.005) / 0.02).round() as u64)
 }
 

@@ -17,17 +17,18 @@ use crate::server::Server;
 
 /// The usual address of a server for agents.
 pub(crate) const ADDRESS: &str = "127.0.0.1:60000";
-/// A torso that has moved by more than this in a cycle was placed, m.
+/// Displacement of the torso in one cycle beyond which the robot counts as placed, m.
 const JUMP: f64 = 0.2;
-/// How long a robot lies before it is picked up, s.
+/// Time for which a robot lies before it is picked up, s.
 const LYING: f64 = 5.0;
-/// How far from the place where it fell a robot is put on its feet, m: behind it, not on the ball.
+/// Distance from the place where a robot fell to where it is put on its feet, m: behind it, not on
+/// the ball.
 const BEHIND: f64 = 0.7;
-/// The cycles that a robot has to come to a stand before the kick-off.
+/// The cycles for a robot to come to a stand before the kick-off.
 const SETTLING: u32 = 100;
-/// The cycles that a command to the monitor may take to show.
-const PATIENCE: u32 = 250;
-/// The cycles that the server has to take in a monitor.
+/// The cycles until a command of the monitor shows its effect, at most.
+const TIMEOUT: u32 = 250;
+/// The cycles for the server to admit a monitor.
 const TAKING_IN: u32 = 25;
 
 /// A humanoid of Booster Robotics on a server.
@@ -49,18 +50,18 @@ pub struct Booster {
     message: Effectors,
     lockstep: bool,
     pick_up: bool,
-    /// Whether a message of the server was received that has to be answered.
+    /// Whether a received message of the server still has to be answered.
     owes_answer: bool,
     measured_at: Timestamp,
     /// Cycles since the robot fell.
     lying: u32,
     before: [f64; 3],
-    /// Ends last, after the connections.
+    /// Dropped last, after the connections.
     _server: Option<Server>,
 }
 
 impl Booster {
-    /// Connects to the server at an address, or starts one, and sets the game up.
+    /// Connects to the server at an address, or starts one, and sets up the game.
     pub(crate) fn open(address: Option<&str>, options: &Options) -> Result<Booster, Error> {
         let robot = options.robot;
         let (walk, kick) = (options.walk_engine()?, options.kick_parameters()?);
@@ -116,7 +117,7 @@ impl Booster {
         self.control.percept().true_position
     }
 
-    /// The heading of the torso that the server says, rad.
+    /// The true heading of the torso, as the server reports it, rad.
     pub fn true_heading(&self) -> f64 {
         let [w, x, y, z] = self.control.percept().true_orientation;
         libm::atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
@@ -134,8 +135,8 @@ impl Booster {
     }
 
     /// Sends a command by the monitor. In lockstep this happens within the next second: the
-    /// commands of each second have effect together, in a cycle that does not depend on the
-    /// computer. Without a monitor it has none.
+    /// commands of each second take effect together, in a cycle that does not depend on the
+    /// computer. Without a monitor the command has no effect.
     pub fn instruct(&mut self, command: Command) {
         if self.has_monitor() {
             self.instructions.push(command);
@@ -153,7 +154,7 @@ impl Booster {
         // Percepts from before the body is at its position are discarded.
         self.connection.receive(|_| Ok(()))?;
         let FieldPose { x, y, heading } = options.start;
-        // The fall from a height may throw a robot over.
+        // A robot dropped from a height may tip over.
         let is_caught = self.robot.placed_height > self.robot.straight_height && self.has_monitor();
         self.message.clear();
         self.message.beam(if is_caught { x - BEHIND } else { x }, y, heading);
@@ -173,10 +174,10 @@ impl Booster {
         Ok(())
     }
 
-    /// Gives the own team the kick-off and waits until it shows.
+    /// Gives the own team the kick-off and waits until the state of the game shows it.
     fn kick_off(&mut self) -> Result<(), Error> {
         self.instruct(Command::KickOff(self.rules.side));
-        for _ in 0..PATIENCE {
+        for _ in 0..TIMEOUT {
             if self.control.percept().game.play_mode != PlayMode::BeforeKickOff {
                 return Ok(());
             }
@@ -240,7 +241,7 @@ impl Booster {
         self.send_instructions()
     }
 
-    /// A robot that is somewhere else at once was placed by the referee, who says where.
+    /// A robot whose position jumps was placed by the referee; the percept holds the new pose.
     fn notice_placement(&mut self) {
         let position = self.true_position();
         let jump = libm::hypot(position[0] - self.before[0], position[1] - self.before[1]);
@@ -266,8 +267,8 @@ impl Booster {
         self.put_up(FieldPose { x: x - ahead * BEHIND, y, heading });
     }
 
-    /// Has the monitor put the robot on its feet, at a pose on the field. It notices that it was
-    /// placed if the place is another one.
+    /// Makes the monitor put the robot on its feet, at a pose on the field. The robot notices the
+    /// placement if the pose differs from its own.
     fn put_up(&mut self, FieldPose { x, y, heading }: FieldPose) {
         let at = [x, y, self.robot.straight_height];
         let (team, number) = (self.rules.team.clone(), self.rules.number);

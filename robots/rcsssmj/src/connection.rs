@@ -7,12 +7,13 @@ use std::time::Duration;
 use crate::error::Error;
 use crate::frame::{self, FrameReader};
 
-/// How long an attempt to connect lasts.
+/// The time limit of an attempt to connect.
 const CONNECTING: Duration = Duration::from_secs(2);
-/// A connection on which a message is awaited for this time has ended. The server waits five
-/// seconds for an agent itself, and compiles its world anew when robots come and go.
+/// A connection on which an awaited message does not arrive for this time counts as ended. The
+/// server waits five seconds for an agent itself, and compiles its world anew when robots come and
+/// go.
 const SILENCE: Duration = Duration::from_secs(20);
-/// How long a message may take to be sent.
+/// The time limit for sending a message.
 const SENDING: Duration = Duration::from_secs(5);
 
 /// A connection to one of the server's ports.
@@ -84,7 +85,8 @@ impl Connection {
         self.reader.next_message()
     }
 
-    /// Ends the connection from here, and waits until the server has read all and closes its side.
+    /// Shuts down the sending side, and waits until the server has read everything and closes its
+    /// side.
     pub(crate) fn finish(mut self) -> Result<(), Error> {
         self.wait(true)?;
         self.stream.shutdown(Shutdown::Write).map_err(|error| ended(&error.to_string()))?;
@@ -142,7 +144,7 @@ impl Connection {
     }
 }
 
-/// Gives another process time, while that of the agents stands still.
+/// Yields the processor to other processes; the time of the agents stands still meanwhile.
 #[expect(clippy::disallowed_methods, reason = "waits for a simulation in another process")]
 pub(crate) fn pause(time: Duration) {
     std::thread::sleep(time);

@@ -9,7 +9,7 @@ use narukom::Timestamp;
 
 use crate::effector::{Effectors, MotorCommand};
 use crate::humanoid::{CYCLE_SECONDS, HEAD_PITCH, HEAD_YAW, Humanoid, JOINTS};
-use crate::inertia::Inertia;
+use crate::inclination_filter::InclinationFilter;
 use crate::kick::{Kick, KickParameters};
 use crate::kinematics::{Foot, Stance, inclination};
 use crate::match_rules::MatchRules;
@@ -19,13 +19,13 @@ use crate::walk::{Gait, Motion, Motors, Ramp, WalkEngine, WalkVelocity};
 /// The motion of the robot.
 #[derive(Clone, Copy, PartialEq, Debug)]
 enum BodyState {
-    /// It follows the walk that is commanded.
+    /// Following the commanded walk.
     Walking,
-    /// It kicks.
+    /// Kicking.
     Kicking,
-    /// It lies, and waits to be put on its feet.
+    /// Lying, waiting to be put on its feet.
     Waiting,
-    /// It rests, for good.
+    /// At rest, permanently.
     Resting,
 }
 
@@ -42,7 +42,7 @@ pub(crate) struct BoosterControl {
     commands: Actuators,
     skills: SkillProgress,
     targets: JointTargets,
-    inertia: Inertia,
+    inclination: InclinationFilter,
     stance: Stance,
     percept: Percept,
     falls: FallDetector,
@@ -59,7 +59,7 @@ impl BoosterControl {
         kick_parameters: KickParameters,
     ) -> BoosterControl {
         let gait = walk.gait();
-        let inertia = Inertia::default();
+        let inclination = InclinationFilter::default();
         BoosterControl {
             robot,
             anatomy: robot.anatomy(gait.x, gait.y, gait.turn),
@@ -72,8 +72,8 @@ impl BoosterControl {
             commands: Actuators::default(),
             skills: SkillProgress::default(),
             targets: JointTargets::default(),
-            stance: Stance::new(robot, &[0.0; JOINTS], &inertia.down()),
-            inertia,
+            stance: Stance::new(robot, &[0.0; JOINTS], &inclination.down()),
+            inclination,
             percept: Percept::default(),
             falls: FallDetector::default(),
             odometry: [0.0; 3],
@@ -95,12 +95,12 @@ impl BoosterControl {
     /// Takes a message of the server.
     pub(crate) fn receive(&mut self, message: &[u8], rules: &MatchRules) -> Result<(), crate::Error> {
         self.percept.decode(message, self.robot)?;
-        self.inertia.advance(self.percept.gyro, self.percept.acceleration, CYCLE_SECONDS);
+        self.inclination.advance(self.percept.gyro, self.percept.acceleration, CYCLE_SECONDS);
         let before = std::mem::replace(
             &mut self.stance,
-            Stance::new(self.robot, &self.percept.positions, &self.inertia.down()),
+            Stance::new(self.robot, &self.percept.positions, &self.inclination.down()),
         );
-        let (roll, pitch) = inclination(&self.inertia.down());
+        let (roll, pitch) = inclination(&self.inclination.down());
         self.falls.measure(roll, pitch);
         if !self.falls.is_inclined() {
             self.measure_step(&before);
@@ -111,10 +111,10 @@ impl BoosterControl {
         Ok(())
     }
 
-    /// The robot was put upright to another place: what it knew of its motion is void.
+    /// The robot was placed upright elsewhere: resets the state of its motion.
     pub(crate) fn placed(&mut self) {
-        self.inertia = Inertia::default();
-        self.stance = Stance::new(self.robot, &self.percept.positions, &self.inertia.down());
+        self.inclination = InclinationFilter::default();
+        self.stance = Stance::new(self.robot, &self.percept.positions, &self.inclination.down());
         self.falls = FallDetector::default();
         self.ramp.reset();
         self.walk.reset();
@@ -127,7 +127,7 @@ impl BoosterControl {
 
     /// Adds the motion of the torso over the foot on the ground to the odometry.
     fn measure_step(&mut self, before: &Stance) {
-        let turned = self.inertia.turn(self.percept.gyro) * CYCLE_SECONDS;
+        let turned = self.inclination.turn(self.percept.gyro) * CYCLE_SECONDS;
         let corner = self.stance.contact();
         let (from, to) = (before.hips_from(corner), self.stance.hips_from(corner));
         let (sin, cos) = libm::sincos(turned);
@@ -177,7 +177,7 @@ impl BoosterControl {
                     positions: self.percept.positions,
                     velocities: self.percept.velocities,
                     gyro: self.percept.gyro,
-                    down: self.inertia.down(),
+                    down: self.inclination.down(),
                 };
                 self.walk.advance(velocity, &motion, &mut self.motors);
                 if let Some(kick) = &mut self.kick
@@ -269,8 +269,8 @@ impl BoosterControl {
         self.targets.set(commands, &self.anatomy)
     }
 
-    /// Stands still, for good: the joints of a robot that lies become slack. The server has no
-    /// motion to sit down with.
+    /// Stands still permanently; the joints of a robot that lies become slack. There is no motion
+    /// for sitting down.
     pub(crate) fn rest(&mut self) {
         self.commands = Actuators::default();
         self.targets = JointTargets::default();
@@ -294,11 +294,11 @@ impl BoosterControl {
         }
     }
 
-    /// Writes what was measured; odometry since the last call.
+    /// Writes the measurements, with the odometry since the last call.
     pub(crate) fn percepts(&mut self, measured_at: Timestamp, percepts: &mut Percepts) {
         let measured_at = measured_at.as_nanos();
         let [odometry_x, odometry_y, odometry_turn] = std::mem::take(&mut self.odometry);
-        let (torso_roll, torso_pitch) = inclination(&self.inertia.down());
+        let (torso_roll, torso_pitch) = inclination(&self.inclination.down());
         let positions = &self.percept.positions;
         let (skill_done, skill_result) = self.skills.done();
         percepts.sensors = Sensors {
@@ -344,7 +344,7 @@ impl BoosterControl {
         let within = |(joint, angle): (usize, &f64)| robot.limits(joint).clamp(*angle);
         refill(&mut joints.positions, self.percept.positions[..count].iter().enumerate().map(within));
         refill(&mut joints.velocities, self.percept.velocities[..count].iter().copied());
-        // The server's motors have neither heat nor current.
+        // The server simulates neither temperature nor current of motors.
         refill(&mut joints.temperatures, std::iter::repeat_n(0.0, count));
         refill(&mut joints.currents, std::iter::repeat_n(0.0, count));
         let stiffness =
@@ -385,7 +385,7 @@ mod tests {
         assert_eq!(done(&mut control), (0, SkillResult::NoResult));
         control.act(&kick(Skill::KickRight, 2));
         assert_eq!(done(&mut control), (2, SkillResult::Refused));
-        // The kick ends where the referee puts the robot to another place.
+        // The kick ends when the referee places the robot elsewhere.
         control.placed();
         assert_eq!(done(&mut control), (1, SkillResult::Interrupted));
     }

@@ -49,8 +49,7 @@ impl Effectors {
         self.write(format_args!("({name} {angle:.3} {velocity:.3} {stiffness} {damping} {torque})"));
     }
 
-    /// Puts the robot to a place of its own half, before a kick-off: metres, and its heading in
-    /// radians.
+    /// Places the robot in its own half before a kick-off: position in metres, heading in radians.
     pub fn beam(&mut self, x: f64, y: f64, heading: f64) {
         self.write(format_args!("(beam {x} {y} {})", heading.to_degrees()));
     }

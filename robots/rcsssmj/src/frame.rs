@@ -1,4 +1,4 @@
-//! Frames: a message after its length as four bytes, the highest first.
+//! Frames: each message is preceded by its length as four bytes, big endian.
 
 use crate::error::Error;
 
@@ -30,7 +30,7 @@ impl FrameReader {
     /// The next complete message; none until it has arrived as a whole.
     ///
     /// # Errors
-    /// The message is longer than [`LONGEST`]. The connection is then of no use any more.
+    /// The message is longer than [`LONGEST`]. The connection is then unusable.
     pub fn next_message(&mut self) -> Result<Option<&[u8]>, Error> {
         let Some(length) = self.length()? else { return Ok(None) };
         let begin = self.start + 4;

@@ -31,7 +31,7 @@ pub(crate) const LEFT_SHOULDER_ROLL: usize = 3;
 /// The roll of the right shoulder.
 pub(crate) const RIGHT_SHOULDER_ROLL: usize = 7;
 
-/// The joint that not each robot has.
+/// The joint that some robots lack.
 const WAIST: usize = 10;
 
 /// The names of the joints, and of their motors and perceptors at the server.
@@ -68,10 +68,10 @@ const CHANNELS: [(&str, &str, &str); JOINTS] = [
 /// pitch and roll of the ankle.
 #[derive(Debug)]
 pub struct Humanoid {
-    /// With which it joins the server.
+    /// The name with which it joins the server.
     pub(crate) name: &'static str,
-    /// Joints, links, masses, camera: of a file. The link after the torso's that a joint moves has
-    /// the joint's index plus one.
+    /// Joints, links, masses and camera, from a file. The link that a joint moves has the joint's
+    /// index plus one.
     pub(crate) anatomy: LazyLock<Anatomy>,
     pub(crate) links: LazyLock<LinkTree>,
     pub(crate) waist: Option<usize>,

@@ -9,7 +9,7 @@ use crate::parameters::parameters;
 use crate::walk::{Motion, Motors};
 
 parameters! {
-    /// The numbers of a kick, as its file names them.
+    /// The parameters of a kick, as its file names them.
     KickParameters, kick;
     ball_x: 0.1, 0.6, "where the ball lies ahead of the robot, m";
     ball_y: 0.0, 0.3, "the same to the side of the foot that kicks, m";
@@ -47,25 +47,25 @@ parameters! {
 
 /// A kick in progress.
 ///
-/// The motors of a walk that stands are its input: the kick takes them over, and gives them back.
-/// Inclination and angular velocity of the torso move ankle and hip of the leg that stands.
+/// It starts from the motor commands of a walk that stands and returns to them. Inclination and
+/// angular velocity of the torso move ankle and hip of the leg that stands.
 #[derive(Clone, Debug)]
 pub struct Kick {
     robot: &'static Humanoid,
     parameters: KickParameters,
     foot: Foot,
-    /// Since the begin, s.
+    /// Time since the start, s.
     time: f64,
 }
 
-/// How far the parts of a kick are at a time, from 0 to 1.
+/// The progress of the phases of a kick, each from 0 to 1.
 struct Progress {
-    /// The motors that are the kick's, against those of the walk.
+    /// The weight of the kick's motor commands against those of the walk.
     own: f64,
     shift: f64,
     lift: f64,
     swing: f64,
-    /// Back from the swing to a stand.
+    /// The return from the swing to a stand.
     back: f64,
 }
 
@@ -164,7 +164,7 @@ impl Kick {
     }
 }
 
-/// From 0 to 1 without a jump of the velocity.
+/// From 0 to 1 with continuous velocity.
 fn smooth(part: f64) -> f64 {
     part * part * (3.0 - 2.0 * part)
 }

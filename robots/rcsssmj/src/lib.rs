@@ -14,9 +14,9 @@
 //! [`PolicyWalk`] a network for the T1 whose weights are loaded from a file. A [`Kick`] is a motion
 //! from a stand. The example `motion_search` finds the numbers of walk and kick. Odometry follows
 //! from the foot on the ground by the [`kinematics`] of the legs and from the gyroscope, the
-//! inclination of the torso from gyroscope and accelerometer ([`Inertia`]). The true pose that the
-//! server sends is used to notice that the referee has placed the robot, and for nothing else that
-//! players see.
+//! inclination of the torso from gyroscope and accelerometer ([`InclinationFilter`]). The true pose
+//! that the server sends is used only to detect that the referee has placed the robot; players see
+//! nothing else of it.
 //!
 //! # Limits
 //!
@@ -44,7 +44,7 @@ mod error;
 pub mod expression;
 pub mod frame;
 mod humanoid;
-mod inertia;
+mod inclination_filter;
 mod k1;
 mod kick;
 pub mod kinematics;
@@ -67,7 +67,7 @@ use monas_robot::{BodyKind, BodySettings, BodySite, Robot};
 pub use body::Booster;
 pub use error::{Error, ErrorKind};
 pub use humanoid::{Humanoid, JOINTS, JointValues};
-pub use inertia::Inertia;
+pub use inclination_filter::InclinationFilter;
 pub use k1::K1;
 pub use kick::{Kick, KickParameters};
 pub use match_rules::FieldSize;
@@ -97,7 +97,7 @@ pub fn open(site: &BodySite) -> Result<Booster, Error> {
     Booster::open(site.address.as_deref(), &options::Options::of(&site.options)?)
 }
 
-/// In lockstep the server's time is that of the run.
+/// In lockstep the time of the run is that of the server.
 fn has_own_time(settings: &BodySettings) -> bool {
     options::Options::of(&settings.options).is_ok_and(|options| !options.realtime)
 }

@@ -30,7 +30,7 @@ const PICKED_UP: BodyLimit =
 /// The limits of a robot with these settings.
 pub(crate) fn limits(settings: &BodySettings) -> Vec<BodyLimit> {
     let mut limits = ALWAYS.to_vec();
-    // Wrong options are faults of the configuration.
+    // Wrong options are reported as faults of the configuration.
     let Ok(options) = Options::of(&settings.options) else { return limits };
     limits.push(if options.pick_up { PICKED_UP } else { LIES });
     limits

@@ -55,7 +55,7 @@ pub(crate) struct MatchRules {
     pub(crate) half: f64,
     /// The side that the team defends.
     pub(crate) side: Side,
-    /// How often the robot was placed, and where the last time, in the frame of its team.
+    /// The number of placements of the robot, and the last pose, in the frame of its team.
     placements: u32,
     placed: FieldPose,
     announced: Option<Announcement>,
@@ -96,7 +96,7 @@ impl MatchRules {
         }
     }
 
-    /// The announcement, if it has changed. The seconds that are left are whole.
+    /// The announcement, if it has changed. The remaining time is in whole seconds.
     pub(crate) fn news(&mut self, game: &Game) -> Option<Announcement> {
         let announcement = self.announcement(game);
         if self.announced == Some(announcement) {
@@ -138,8 +138,9 @@ impl MatchRules {
     }
 }
 
-/// Phase of the game, set play, and the team that has it. While the opponents have the ball for
-/// themselves the robot waits as before a kick-off: who comes too near is put to the touch line.
+/// Phase of the game, set play, and the team that has it. During a set play of the opponents the
+/// robot waits as before a kick-off: the referee moves a robot that comes too near to the touch
+/// line.
 fn phase(mode: PlayMode, own: Side) -> (GamePhase, SetPlay, Option<Side>) {
     let (set_play, side) = match mode {
         PlayMode::BeforeKickOff => return (GamePhase::Set, SetPlay::NoSetPlay, None),
@@ -153,7 +154,7 @@ fn phase(mode: PlayMode, own: Side) -> (GamePhase, SetPlay, Option<Side>) {
         PlayMode::FreeKick(side) => (SetPlay::IndirectFreeKick, side),
         PlayMode::DirectFreeKick(side) => (SetPlay::DirectFreeKick, side),
         PlayMode::PenaltyKick(side) | PlayMode::PenaltyShoot(side) => (SetPlay::PenaltyKick, side),
-        // The ball is the other team's after an offside.
+        // After an offside the other team has the ball.
         PlayMode::Offside(side) => (SetPlay::IndirectFreeKick, opposite(side)),
     };
     (if side == own { GamePhase::Playing } else { GamePhase::Set }, set_play, Some(side))

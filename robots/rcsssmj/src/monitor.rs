@@ -1,4 +1,4 @@
-//! The monitor of the server: the hand of the referee and of those who set up a trial.
+//! The monitor of the server, by which the referee and trials place ball and robots.
 
 use std::fmt::{Display, Formatter, Write};
 
@@ -14,7 +14,7 @@ pub struct MonitoredGame {
     pub time: f64,
     /// The time that has been played, s.
     pub play_time: f64,
-    /// How the game goes on.
+    /// The play mode.
     pub play_mode: PlayMode,
     /// The goals of the team on the left.
     pub left_score: u32,
@@ -66,16 +66,16 @@ impl MonitoredGame {
 pub enum Command {
     /// Gives a team the kick-off.
     KickOff(Side),
-    /// Lets the game go on where the ball lies.
+    /// Resumes the game where the ball lies.
     DropBall,
-    /// Puts the ball to a place, m, with a velocity, m/s.
+    /// Places the ball at a position, m, with a velocity, m/s.
     PlaceBall {
         /// The middle of the ball.
         at: [f64; 3],
         /// Its velocity.
         velocity: [f64; 3],
     },
-    /// Puts a robot upright to a place, with all its joints at zero.
+    /// Places a robot upright, with all its joints at zero.
     PlaceRobot {
         /// The name of its team.
         team: String,
@@ -155,7 +155,7 @@ impl Monitor {
 
     /// Waits for the state after a time of the server, s.
     pub(crate) fn wait_beyond(&mut self, time: f64) -> Result<(), Error> {
-        // Both times are cut off after two digits.
+        // Both times are truncated to two decimals.
         while self.game.time < time + 0.005 {
             let game = &mut self.game;
             self.connection.receive(|message| game.decode(message))?;
@@ -163,7 +163,8 @@ impl Monitor {
         Ok(())
     }
 
-    /// Ends the connection, once the server has taken in all commands: it closes its side then.
+    /// Ends the connection after the server has read all commands, which it shows by closing its
+    /// side.
     pub(crate) fn finish(self) -> Result<(), Error> {
         self.connection.finish()
     }

@@ -1,4 +1,4 @@
-//! Numbers of motions, and their files.
+//! Parameters of motions, and their files.
 
 use toml::de::{DeTable, DeValue};
 
@@ -93,7 +93,7 @@ fn in_range(value: Option<&DeValue<'_>>, least: f64, most: f64) -> Result<f64, S
     let text = match value {
         Some(DeValue::Float(number)) => number.as_str(),
         Some(DeValue::Integer(number)) => number.as_str(),
-        Some(other) => return Err(format!("is no number but a {}", other.type_str())),
+        Some(other) => return Err(format!("is not a number but a {}", other.type_str())),
         None => return Err("is missing".into()),
     };
     match text.parse() {

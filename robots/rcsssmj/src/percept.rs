@@ -58,7 +58,7 @@ pub enum Side {
     Right,
 }
 
-/// How the game goes on, with the team that it concerns.
+/// A play mode, with the team that it concerns.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub enum PlayMode {
     /// The game has not begun.
@@ -68,7 +68,7 @@ pub enum PlayMode {
     KickOff(Side),
     /// The ball is free.
     PlayOn,
-    /// A team brings the ball into the field at the touch line.
+    /// A team has a throw-in.
     KickIn(Side),
     /// A team has a corner kick.
     CornerKick(Side),
@@ -177,8 +177,7 @@ pub enum CameraObject {
 }
 
 impl Percept {
-    /// Reads a message to a robot. An unknown percept is passed over: robots differ in what they
-    /// perceive.
+    /// Reads a message to a robot. Unknown percepts are skipped: robots differ in their percepts.
     ///
     /// # Errors
     /// The parentheses are not balanced, or a percept does not have the form of its kind. Percepts

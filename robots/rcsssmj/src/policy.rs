@@ -2,7 +2,7 @@
 //!
 //! The network is the one of the example `nn_client` in the server's repository (MIT licence),
 //! which commands velocities: 78 inputs, hidden layers of 512 (with layer normalisation), 256 and
-//! 128 units with ELU, and an angle for each of the 23 joints. Its weights are no part of this
+//! 128 units with ELU, and an angle for each of the 23 joints. Its weights are not part of this
 //! project. The file holds them as 32 bit numbers, the lowest byte first: of each layer the
 //! weights, one row for each output, then the biases; after the biases of the first layer the gains
 //! and the biases of its normalisation.
@@ -30,7 +30,7 @@ const NUMBERS: usize = INPUTS * HIDDEN[0]
     + HIDDEN[2] * JOINTS
     + JOINTS;
 
-/// Angles around which the network moves the joints, rad, before [`FLIP`].
+/// Default angles to which the network's outputs are added, rad, before [`FLIP`].
 #[rustfmt::skip]
 const NOMINAL: [f32; JOINTS] = [
     0.0, 0.0,
@@ -54,7 +54,7 @@ const FLIP: [f32; JOINTS] = [
 const GAINS: (f64, f64) = (25.0, 0.6);
 /// Greatest size of inputs and outputs.
 const CLIP: f32 = 10.0;
-/// From this turn on, rad/s, only half of a step to a side is safe.
+/// Angular velocity, rad/s, from which the lateral velocity is halved for safety.
 const TURNING: f64 = 0.3;
 
 /// The network with its last output.
@@ -81,7 +81,7 @@ impl PolicyWalk {
     ///
     /// # Errors
     /// The robot is not a T1. The file cannot be read, does not have the size of the network, or
-    /// holds what is no number.
+    /// holds what is not a number.
     pub fn load(robot: &Humanoid, path: &Path) -> Result<PolicyWalk, Error> {
         if *robot != T1 {
             let name = robot.name();
@@ -104,7 +104,7 @@ impl PolicyWalk {
         }
         let mut numbers = bytes.as_chunks::<4>().0.iter().map(|bytes| f32::from_le_bytes(*bytes));
         if let Some(place) = numbers.clone().position(|number| !number.is_finite()) {
-            return Err(format!("weight {place} is no finite number"));
+            return Err(format!("weight {place} is not a finite number"));
         }
         let mut take = |count| numbers.by_ref().take(count).collect::<Vec<f32>>();
         let mut layer = |inputs, outputs| Layer { weights: take(inputs * outputs), biases: take(outputs) };
@@ -240,7 +240,7 @@ mod tests {
             error()
         );
         std::fs::write(&path, weights(&[(7, f32::NAN)])).unwrap();
-        assert!(error().ends_with("weight 7 is no finite number"), "{}", error());
+        assert!(error().ends_with("weight 7 is not a finite number"), "{}", error());
         std::fs::write(&path, weights(&[])).unwrap();
         assert!(PolicyWalk::load(&T1, &path).is_ok());
     }

@@ -14,10 +14,10 @@ use crate::monitor::Monitor;
 
 /// The program, as its package installs it.
 pub(crate) const PROGRAM: &str = "rcssservermj";
-/// How a missing program is installed.
+/// The command that installs a missing program.
 const INSTALL: &str =
     "install it with `pip install rcsssmj==0.2.1`, or name the program in the attribute `server`";
-/// How long the server may take to answer: Python and the physics are loaded first.
+/// The time limit for the server's first answer: Python and the physics are loaded first.
 const STARTING: Duration = Duration::from_secs(90);
 /// The pause between two attempts to connect.
 const RETRY: Duration = Duration::from_millis(5);
@@ -33,12 +33,12 @@ const REPAIR: &str = include_str!("sitecustomize.py");
 /// server and removes its folder.
 const WATCH: &str = r#"read _; kill -9 "$0"; rm -rf "$1""#;
 
-/// A running server; it ends with this value, or with the process of the run, even if that is
-/// killed.
+/// A running server; it ends when this value is dropped, or with the process of the run, even if
+/// that is killed.
 #[derive(Debug)]
 pub struct Server {
     process: Child,
-    /// Ends the server if the run cannot. There is none where there are no Unix shells.
+    /// Ends the server if the run cannot; absent on systems without a Unix shell.
     watcher: Option<Child>,
     /// The folder of its log.
     folder: PathBuf,
@@ -102,8 +102,8 @@ impl Server {
         &self.monitors
     }
 
-    /// A monitor of the server, once it makes its cycles. Version 0.2.1 ends with an error when an
-    /// agent joins in the first one.
+    /// Connects a monitor once the server runs its cycles. Version 0.2.1 fails when an agent joins
+    /// in the first cycle.
     ///
     /// # Errors
     /// The server has ended, or does not answer.
@@ -138,7 +138,7 @@ impl Server {
 
 impl Drop for Server {
     fn drop(&mut self) {
-        // A process that has ended already is no error. The watcher ends first: it has only the
+        // A process that has ended already is not an error. The watcher ends first: it has only the
         // number of the server, which another process may have later.
         if let Some(watcher) = &mut self.watcher {
             let _ = watcher.kill();

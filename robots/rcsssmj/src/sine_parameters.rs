@@ -1,11 +1,11 @@
-//! The numbers of the project's own walk.
+//! The parameters of the project's own walk.
 
 use std::f64::consts::TAU;
 
 use crate::parameters::parameters;
 
 parameters! {
-    /// The numbers of a walk, as its file names them.
+    /// The parameters of a walk, as its file names them.
     SineParameters, walk;
     frequency: 0.5, 5.0, "pairs of steps in a second";
     height: 0.3, 0.55, "of the hips above the soles in a walk, m";
@@ -60,7 +60,7 @@ mod tests {
         assert_eq!(error(own.replace("lean =", "# lean =")), "`lean` is missing");
         assert_eq!(error(format!("{own}\nhop = 1")), "there is no parameter `hop`");
         assert_eq!(error(own.replace("lift = ", "lift = 7 #")), "`lift` is 7, expected 0 to 0.15");
-        assert_eq!(error(own.replace("lift = ", "lift = \"x\" #")), "`lift` is no number but a string");
+        assert_eq!(error(own.replace("lift = ", "lift = \"x\" #")), "`lift` is not a number but a string");
     }
 
     #[test]

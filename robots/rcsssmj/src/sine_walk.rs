@@ -23,17 +23,17 @@ pub struct SineWalk {
     parameters: SineParameters,
     /// The phase in a pair of steps, rad; the left foot swings in the first half.
     clock: f64,
-    /// How far the robot has gone into its crouch, and how far the steps have grown: 0 to 1.
+    /// The progress into the crouch, and the growth of the steps, from 0 to 1.
     crouched: f64,
     stepping: f64,
     velocity: WalkVelocity,
-    /// Seconds since the last command that was not to stand.
+    /// Seconds since the last command other than standing.
     still: f64,
 }
 
-/// The time in which the robot goes into its crouch, s.
+/// The duration of the motion into the crouch, s.
 const CROUCHING: f64 = 0.4;
-/// How long the robot steps on the spot before it stands, s: it has to lose its speed.
+/// Duration of stepping on the spot before standing, s, in which the robot loses its speed.
 const SLOWING: f64 = 1.2;
 /// Roll of the shoulders beside the body, rad: the arms hang.
 const ARMS: f64 = 1.35;
@@ -66,7 +66,7 @@ impl SineWalk {
             true => libm::fmod(self.clock + TAU * walk.frequency * CYCLE_SECONDS, TAU),
             false => 0.0,
         };
-        // Strides grow after the steps have, and are gone before those end.
+        // Strides grow after the steps have grown, and end before the steps do.
         let wanted = if self.stepping >= 1.0 { wanted } else { WalkVelocity::default() };
         let linear = walk.acceleration * CYCLE_SECONDS;
         let angular = walk.turn_acceleration * CYCLE_SECONDS;

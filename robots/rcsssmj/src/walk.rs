@@ -44,7 +44,7 @@ impl Motion {
 /// Commands to all motors.
 pub type Motors = [MotorCommand; JOINTS];
 
-/// The velocities that a walk can be asked for.
+/// The limits of the velocities of a walk.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Gait {
     /// Ahead, m/s.
@@ -57,7 +57,7 @@ pub struct Gait {
 
 /// Turns velocities into commands to the motors.
 pub trait WalkEngine: Send {
-    /// The velocities that it can be asked for.
+    /// The limits of its velocities.
     fn gait(&self) -> Gait;
 
     /// Advances by one cycle of 20 ms with a velocity within its gait, and commands all motors.
@@ -70,7 +70,8 @@ pub trait WalkEngine: Send {
 /// The greatest changes of velocity: m/s2 and rad/s2.
 const ACCELERATION: (f64, f64) = (1.5, 4.0);
 
-/// A velocity that follows what is wanted within the limits of a gait and of its changes.
+/// A velocity that approaches the requested one within the limits of a gait and of its
+/// acceleration.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub struct Ramp {
     velocity: WalkVelocity,

@@ -24,12 +24,12 @@ const STILL: f64 = 2e-3;
 /// Feet whose heights differ by less are both on the ground, m.
 const SAME_HEIGHT: f64 = 2e-3;
 
-/// Follows the angles of the joints and says what a body in the plane does.
+/// Derives the commands of a body in the plane from the angles of the joints.
 #[derive(Debug)]
 pub(super) struct JointMotion {
-    /// The skill that the angles amount to at present.
+    /// The skill recognised from the present angles.
     observed: Option<Skill>,
-    /// The skill that was observed last.
+    /// The skill that was recognised last.
     skill: Skill,
     skill_number: u64,
     was_stiff: bool,
@@ -60,7 +60,7 @@ impl JointMotion {
         self.support
     }
 
-    /// The commands in the plane that the change of the angles amounts to.
+    /// The commands in the plane that correspond to the change of the angles.
     pub(super) fn observe(&mut self, before: &JointAngles, now: &JointAngles, posture: Posture) -> Actuators {
         let feet = Side::BOTH.map(|side| foot_in_torso(side, now));
         let observed = match posture {
@@ -101,7 +101,7 @@ fn is_folded(angles: &JointAngles) -> bool {
 /// The skill that a body on its feet begins: a fall to a side, or a kick.
 fn upright_skill(feet: &[Isometry3<f64>; 2]) -> Option<Skill> {
     let [left, right] = feet;
-    // The foot on the ground is the one above which the other is.
+    // The lower foot is on the ground.
     let (support, foot, other) = match left.inverse_transform_point(&right.translation.vector.into()).z >= 0.0
     {
         true => (Side::Left, left, right),
@@ -137,7 +137,7 @@ mod tests {
     use crate::motions::{SpecialActions, stand};
     use crate::walk::{SteppingWalk, WalkEngine, WalkVelocity};
 
-    /// The skills that a motion of the joints amounts to.
+    /// The skills that are recognised from a motion of the joints.
     fn seen(skill: Skill, posture: Posture) -> Vec<Skill> {
         let actions = SpecialActions::of(&BTreeMap::new()).unwrap();
         let (mut motion, mut angles) = (actions.motion(skill, stand()).unwrap(), stand());

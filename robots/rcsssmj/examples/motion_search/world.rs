@@ -107,7 +107,7 @@ impl World {
 
 impl Drop for World {
     fn drop(&mut self) {
-        // A process that has ended already is no error.
+        // A process that has ended already is not an error.
         let _ = self.process.kill();
         let _ = self.process.wait();
     }

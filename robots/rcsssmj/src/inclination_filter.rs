@@ -2,28 +2,28 @@
 
 use nalgebra::Vector3;
 
-/// The part of the error against the accelerometer that is corrected in a second. It is small:
-/// steps shake the torso, and what it accelerates by is not only gravity.
+/// The fraction of the error against the accelerometer that is corrected per second. It is small:
+/// steps shake the torso, so the accelerometer does not measure gravity alone.
 const CORRECTION: f64 = 0.4;
-/// Accelerations between these, m/s2, show where down is.
+/// Range of the acceleration, m/s2, in which the accelerometer is taken to measure gravity.
 const TRUSTED: std::ops::Range<f64> = 8.0..12.0;
 
 /// A complementary filter of the direction of gravity (Mahony, Hamel, Pflimlin, *Nonlinear
 /// Complementary Filters on the Special Orthogonal Group*, IEEE TAC 2008, section IV, without the
 /// estimate of the gyroscope's bias, since the server's has none).
 #[derive(Clone, Copy, PartialEq, Debug)]
-pub struct Inertia {
+pub struct InclinationFilter {
     down: Vector3<f64>,
 }
 
-impl Default for Inertia {
+impl Default for InclinationFilter {
     /// Upright.
-    fn default() -> Inertia {
-        Inertia { down: -Vector3::z() }
+    fn default() -> InclinationFilter {
+        InclinationFilter { down: -Vector3::z() }
     }
 }
 
-impl Inertia {
+impl InclinationFilter {
     /// Advances by `seconds` with the measured angular velocity, rad/s, and acceleration, m/s2.
     pub fn advance(&mut self, gyro: [f64; 3], acceleration: [f64; 3], seconds: f64) {
         let (gyro, acceleration) = (Vector3::from(gyro), Vector3::from(acceleration));
@@ -56,28 +56,28 @@ mod tests {
 
     #[test]
     fn a_turn_of_the_torso_is_followed_at_once() {
-        let mut inertia = Inertia::default();
+        let mut filter = InclinationFilter::default();
         for step in 0..50 {
             // Falling forwards with 1 rad/s: gravity moves from z towards the torso's x.
             let angle = f64::from(step) * 0.02;
             let felt = [-9.81 * libm::sin(angle), 0.0, 9.81 * libm::cos(angle)];
-            inertia.advance([0.0, 1.0, 0.0], felt, 0.02);
+            filter.advance([0.0, 1.0, 0.0], felt, 0.02);
         }
-        let (roll, pitch) = inclination(&inertia.down());
+        let (roll, pitch) = inclination(&filter.down());
         assert!((pitch - 1.0).abs() < 0.02 && roll.abs() < 1e-9, "{roll} {pitch}");
-        assert!((inertia.turn([0.0, 0.0, 1.0]) - libm::cos(pitch)).abs() < 1e-9);
+        assert!((filter.turn([0.0, 0.0, 1.0]) - libm::cos(pitch)).abs() < 1e-9);
     }
 
     #[test]
     fn a_wrong_inclination_is_corrected_and_shocks_are_not_believed() {
-        let mut inertia = Inertia { down: Vector3::new(0.3, 0.0, -0.95).normalize() };
+        let mut filter = InclinationFilter { down: Vector3::new(0.3, 0.0, -0.95).normalize() };
         for _ in 0..1000 {
-            inertia.advance([0.0; 3], [0.0, 0.0, 9.81], 0.02);
+            filter.advance([0.0; 3], [0.0, 0.0, 9.81], 0.02);
         }
-        assert!((inertia.down() + Vector3::z()).norm() < 1e-3);
-        inertia.advance([0.0; 3], [60.0, 0.0, 9.81], 0.02);
-        assert!((inertia.down() + Vector3::z()).norm() < 1e-3);
-        inertia.advance([0.0; 3], [0.0; 3], 0.02);
-        assert!(inertia.down().norm() > 0.99);
+        assert!((filter.down() + Vector3::z()).norm() < 1e-3);
+        filter.advance([0.0; 3], [60.0, 0.0, 9.81], 0.02);
+        assert!((filter.down() + Vector3::z()).norm() < 1e-3);
+        filter.advance([0.0; 3], [0.0; 3], 0.02);
+        assert!(filter.down().norm() > 0.99);
     }
 }
