@@ -74,7 +74,7 @@ pub const IDEAL_STANDING: Variant =
 /// As [`ATTACK`], with cameras without latency and errors of interpretation.
 pub const IDEAL_ATTACK: Variant = Variant { name: "ideal_attack", file: "tests/season/ideal_attack.xml" };
 
-/// The variants that are no part of the season.
+/// The variants that are not part of the season.
 pub const OTHER_VARIANTS: [Variant; 3] = [IDEAL, IDEAL_STANDING, IDEAL_ATTACK];
 
 /// Every variant of the season.

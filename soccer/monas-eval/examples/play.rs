@@ -34,7 +34,7 @@ fn main() -> ExitCode {
 
 fn sums(file: &str, numbers: [&str; 3], is_direct: bool) -> Result<PlayFigures, String> {
     let [Some(first), Some(last), Some(seconds)] = numbers.map(|number| number.parse::<u64>().ok()) else {
-        return Err(format!("{numbers:?} are no whole numbers"));
+        return Err(format!("{numbers:?} are not whole numbers"));
     };
     let registry = Registry::linked();
     let mut sums = PlayFigures::default();

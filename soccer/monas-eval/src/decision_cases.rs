@@ -209,7 +209,7 @@ impl Case {
     }
 }
 
-/// Scenarios that are no single decision: `play` in the tests of each methodology corresponds.
+/// Scenarios of more than one decision: `play` in the tests of each methodology corresponds.
 const OF_TIME: [&str; 12] = [
     "at_rest",
     "decides_in_time",

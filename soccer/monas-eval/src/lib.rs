@@ -9,7 +9,7 @@
 //! All three call the functionalities of [`monas_soccer`]: filters, paths, kicks and the arbiter of
 //! motions are the same code. What differs is how a robot decides, and how its parts communicate.
 //! [`evaluate`] plays matches of each methodology against the team of `config/match.xml`, measures
-//! what the programs of the robots cost, and counts their sources ([`sources`]).
+//! the cost of the programs of the robots, and counts their sources ([`sources`]).
 //!
 //! ```no_run
 //! use std::time::Duration;

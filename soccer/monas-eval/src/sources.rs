@@ -140,7 +140,7 @@ const ALGORITHMS: [&str; 9] = [
     "Box<dyn Robot>",
 ];
 
-/// Fields of structs with a type that is no algorithm and no generic behaviour.
+/// Fields of structs with a type that is not an algorithm and no generic behaviour.
 fn state_variables(text: &str) -> usize {
     let mut inside = false;
     let mut count = 0;

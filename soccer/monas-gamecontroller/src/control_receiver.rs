@@ -44,7 +44,7 @@ impl ControlReceiver {
     /// The next control data that has arrived; returns at once if there is none.
     ///
     /// # Errors
-    /// The socket cannot be read. A malformed packet is no error of this kind.
+    /// The socket cannot be read. A malformed packet is not an error of this kind.
     pub fn receive(&mut self) -> io::Result<Option<Received<GameControlData>>> {
         received::next(&self.control, GameControlData::decode)
     }

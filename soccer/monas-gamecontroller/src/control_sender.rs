@@ -73,7 +73,7 @@ impl ControlSender {
     /// The next return data that has arrived; returns at once if there is none.
     ///
     /// # Errors
-    /// The socket cannot be read. A malformed packet is no error of this kind.
+    /// The socket cannot be read. A malformed packet is not an error of this kind.
     pub fn receive(&mut self, now: Timestamp) -> io::Result<Option<Received<ReturnData>>> {
         let received = received::next(&self.reports, ReturnData::decode)?;
         if let Some(Received { content: Ok(report), .. }) = &received {

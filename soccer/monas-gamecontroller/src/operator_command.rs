@@ -145,7 +145,7 @@ impl CommandArguments<'_> {
         let (word, rest) = self.rest.split_once(char::is_whitespace).unwrap_or((self.rest, ""));
         let number = word.parse().map_err(|_| match word {
             "" => format!("{what} is missing: {}", self.usage),
-            _ => format!("`{word}` is no number from 0 to 255: {}", self.usage),
+            _ => format!("`{word}` is not a number from 0 to 255: {}", self.usage),
         })?;
         self.rest = rest.trim_start();
         Ok(number)
@@ -203,7 +203,7 @@ mod tests {
         for (line, reason) in [
             ("reddy", "there is no command `reddy`; there are initial, standby, ready"),
             ("goal", "TEAM is missing: goal TEAM"),
-            ("goal blue", "`blue` is no number from 0 to 255: goal TEAM"),
+            ("goal blue", "`blue` is not a number from 0 to 255: goal TEAM"),
             ("goal 5 1", "`1` is too much: goal TEAM"),
             ("penalize 5 2 pushin", "there is no penalty `pushin`; there are ball holding, pushing"),
             ("set-play 5 kick", "there is no set play `kick`; there are goal kick"),

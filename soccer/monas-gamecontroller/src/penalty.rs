@@ -3,7 +3,7 @@
 use crate::rule_book::codes;
 
 codes! {
-    /// Why a player is off the field. Number 0 of both rule books, no penalty, is no value.
+    /// Why a player is off the field. Number 0 of both rule books, no penalty, is not a value.
     Penalty, "penalty":
     /// Illegal contact with the ball, or holding it.
     BallHolding "ball holding" Some(1), Some(6);

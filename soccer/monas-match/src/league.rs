@@ -1,4 +1,4 @@
-//! The end of the league's network protocol that a match has: its robots', or its referee's.
+//! A match as an endpoint of the league's network protocol: its robots, or its referee.
 
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;

@@ -41,7 +41,7 @@ pub struct MatchEvent {
 #[derive(Clone, Debug)]
 pub struct MatchSummary {
     /// The hash of all messages, 64 hexadecimal digits: see [`monas::RunHash`]. None in real time,
-    /// in which no match is like another.
+    /// in which matches are not reproducible.
     pub hash: Option<String>,
     /// The number of published messages.
     pub messages: u64,

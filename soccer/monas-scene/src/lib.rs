@@ -7,8 +7,8 @@
 //! referee's decisions become events of the timeline. The images of robots on `body/images` become
 //! PNG. [`RgbImage`] is an image in a file.
 //!
-//! It is a crate of its own, because the command line has no soccer in it, and matches have no
-//! studio.
+//! It is a separate crate, because the command line does not depend on soccer, and matches do not
+//! depend on the studio.
 //!
 //! ```
 //! use monas_scene::SoccerField;

@@ -66,7 +66,7 @@ pub enum EventKind {
         /// The robot that shot.
         robot: usize,
     },
-    /// A shot that the goalie touched and that is no goal.
+    /// A shot that the goalie touched and that is not a goal.
     Save {
         /// The goalie.
         robot: usize,

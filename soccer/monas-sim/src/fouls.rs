@@ -12,7 +12,7 @@ pub enum Offence {
     BallHolding,
     /// A field player was in its own goal area.
     IllegalDefender,
-    /// A person has decided it: with a GameController, or as the referee of the match.
+    /// Decided by a person, with a GameController or as the referee of the match.
     Announced,
 }
 

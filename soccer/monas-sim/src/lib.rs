@@ -33,8 +33,9 @@
 //! ball.
 //!
 //! *The referee places robots.* INITIAL begins with all robots placed by hand. In READY they walk
-//! to their places for the kick-off, and SET places those by hand that stand where they must not.
-//! Outside READY and PLAYING, and while the game is stopped, the referee holds the robots.
+//! to their places for the kick-off, and SET places those by hand that stand in an illegal
+//! position. Outside READY and PLAYING, and while the game is stopped, the referee holds the
+//! robots.
 //!
 //! # Frames and units
 //!

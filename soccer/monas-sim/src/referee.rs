@@ -3,10 +3,10 @@
 //! The referee decides on the ground truth and emits events; the world carries them out. Every half
 //! begins in INITIAL, for which all robots are placed by hand, and its clock runs until the half
 //! ends. A goal leads from PLAYING to READY, in which robots walk to their places until none moves
-//! any more; SET places those by hand that stand where they must not.
+//! any more; SET places those by hand that stand in an illegal position.
 //!
-//! Not judged are robots that enter the centre circle before the ball is touched, goals straight
-//! from a kick-off, and robots that leave the field, which do not affect play.
+//! The referee does not judge robots that enter the centre circle before the ball is touched, goals
+//! straight from a kick-off, and robots that leave the field, which do not affect play.
 
 mod game_order;
 mod referee_call;

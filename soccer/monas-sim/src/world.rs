@@ -482,7 +482,7 @@ impl SimulatedWorld {
         self.put_down(robot, pose);
     }
 
-    /// A person places a robot, which feels that it is lifted.
+    /// A person places a robot, whose feet detect that it is lifted.
     fn put_down(&mut self, robot: usize, pose: Pose) {
         self.set_robot(robot, pose);
         self.sensors[robot].lifted_until = self.steps + (LIFTED / STEP) as u64;
@@ -553,7 +553,7 @@ impl SensorState {
     }
 }
 
-/// Whether a robot stands where it must not stand at a kick-off, or does not stand.
+/// Whether a robot stands in an illegal position for a kick-off, or does not stand.
 fn is_misplaced(world: &SimulatedWorld, robot: usize) -> bool {
     let RobotState { team, .. } = world.now.robots[robot];
     let defends = world.referee.defends()[team];

@@ -132,7 +132,7 @@ impl GameState {
         is_known.then_some(goal)
     }
 
-    /// The player's state as functionalities know it.
+    /// The player's state as a type of the functionalities.
     pub fn state(&self) -> game::PlayerState {
         match self.player_state() {
             PlayerState::Initial => game::PlayerState::Initial,
@@ -223,7 +223,7 @@ fn skill_end(result: SkillResult) -> Option<SkillEnd> {
     }
 }
 
-/// How the last request for a skill ended, as its message says it.
+/// The result of the last request for a skill, as a message.
 pub fn motion_result(end: Option<SkillEnd>) -> MotionResult {
     match end {
         None => MotionResult::NoResult,

@@ -1,7 +1,7 @@
 //! Ball, pose and other robots, estimated from sightings and odometry.
 //!
-//! [`Perception`] is the work of the activity [`Vision`](crate::activities::Vision) without a
-//! blackboard, for programs that have none.
+//! [`Perception`] is the activity [`Vision`](crate::activities::Vision) without a blackboard, for
+//! programs that have none.
 
 use monas_robot::{ObjectKind, Posture, Sighting, Sightings};
 use nalgebra::{Isometry2, Point2};
@@ -57,9 +57,9 @@ pub struct Perception {
 }
 
 /// Distance of the nearest robot when there is none, metres.
-const NOBODY: f64 = 1e6;
+const NO_ROBOT: f64 = 1e6;
 
-/// Standard deviation of a pose at which the robot has put itself: metres and radians.
+/// Standard deviation of a pose that the robot reaches by placing itself: metres and radians.
 const PLACED: (f64, f64) = (0.05, 0.05);
 
 /// Least length of a line, and the farthest distance of its middle, that corrects the pose, metres.
@@ -210,7 +210,7 @@ impl Perception {
     /// Sets where the ball lies to the team mates that were seen, and to the own goal area.
     fn in_surroundings(&self, ball: Ball, robots: &Robots, field: Option<FieldModel>) -> Ball {
         let mates = robots.robots.iter().filter(|robot| robot.team_mate);
-        let nearest = mates.map(|mate| (mate.position() - ball.position()).norm()).fold(NOBODY, f64::min);
+        let nearest = mates.map(|mate| (mate.position() - ball.position()).norm()).fold(NO_ROBOT, f64::min);
         let in_area = |(field, filter): (FieldModel, &Localisation)| {
             field.in_own_area(filter.field_from_robot() * ball.position(), 0.0)
         };
@@ -228,7 +228,7 @@ impl Perception {
         });
         let robots: Vec<OtherRobot> = robots.collect();
         let distances = robots.iter().map(|robot| robot.position().coords.norm());
-        let nearest = distances.fold(NOBODY, f64::min);
+        let nearest = distances.fold(NO_ROBOT, f64::min);
         Robots { nearest, robots, opponents_stand: self.obstacles.opponents_stand() }
     }
 

@@ -44,7 +44,7 @@ fn row(variant: &str, seed: &str, seconds: &str) -> Result<(), String> {
 }
 
 fn rows(variant: &str, seeds: &str, seconds: &str) -> Result<(), String> {
-    let (from, to) = seeds.split_once('-').ok_or_else(|| format!("`{seeds}` are no seeds"))?;
+    let (from, to) = seeds.split_once('-').ok_or_else(|| format!("`{seeds}` are not seeds"))?;
     let (_, from, length) = game(variant, from, seconds)?;
     let (variant, to, _) = game(variant, to, seconds)?;
     println!("{}", MatchRow::HEADER);
@@ -54,7 +54,7 @@ fn rows(variant: &str, seeds: &str, seconds: &str) -> Result<(), String> {
 }
 
 fn poses(variant: &str, seeds: &str, seconds: &str) -> Result<(), String> {
-    let (from, to) = seeds.split_once('-').ok_or_else(|| format!("`{seeds}` are no seeds"))?;
+    let (from, to) = seeds.split_once('-').ok_or_else(|| format!("`{seeds}` are not seeds"))?;
     let (_, from, length) = game(variant, from, seconds)?;
     let (variant, to, _) = game(variant, to, seconds)?;
     let (mut places, mut turns, mut recoveries, mut lost) = (Vec::new(), Vec::new(), Vec::new(), 0);
@@ -86,8 +86,8 @@ fn count(variant: &str, seed: &str, seconds: &str) -> Result<(), String> {
 fn game(variant: &str, seed: &str, seconds: &str) -> Result<(&'static Variant, u64, Duration), String> {
     let known = VARIANTS.iter().chain(&OTHER_VARIANTS).find(|known| known.name == variant);
     let variant = known.ok_or_else(|| format!("no variant `{variant}`"))?;
-    let seed = seed.parse().map_err(|_| format!("`{seed}` is no seed"))?;
-    let seconds = seconds.parse().map_err(|_| format!("`{seconds}` is no number of seconds"))?;
+    let seed = seed.parse().map_err(|_| format!("`{seed}` is not a seed"))?;
+    let seconds = seconds.parse().map_err(|_| format!("`{seconds}` is not a number of seconds"))?;
     Ok((variant, seed, Duration::from_secs(seconds)))
 }
 

@@ -246,8 +246,8 @@ fn cycle(physics: &Physics) -> Duration {
     Duration::from_millis((steps * STEP * 1e3).round() as u64)
 }
 
-/// The posture as the body knows it: its own motions, the contact of its feet, and the inclination
-/// of its torso, from which it finds that it has lost its balance, and that it lies.
+/// The posture as the body can measure it: from its own motions, the contacts of its feet, and the
+/// inclination of its torso, which shows that it has lost its balance or lies.
 fn posture(phase: BodyPhase, is_lifted: bool, falls: FallDetector) -> Posture {
     match phase {
         _ if is_lifted => Posture::Lifted,

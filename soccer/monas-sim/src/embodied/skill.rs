@@ -6,7 +6,7 @@ use crate::{BodyPhase, Motion, Side};
 
 /// Readings within which a body has to begin a skill; afterwards it counts as refused (the body
 /// lies, or is off the field).
-const PATIENCE: u32 = 3;
+const BEGIN_READINGS: u32 = 3;
 
 /// The active skill and the last that ended.
 #[derive(Clone, Copy, Debug, Default)]
@@ -46,7 +46,7 @@ impl SkillTrack {
         let performing = performs(active.motion, phase);
         active.begun |= performing;
         let (motion, begun) = (active.motion, active.begun);
-        if !begun && active.readings > PATIENCE {
+        if !begun && active.readings > BEGIN_READINGS {
             self.end(SkillResult::Refused);
         } else if begun && !performing {
             self.end(if completes(motion, phase) {
@@ -172,7 +172,7 @@ mod tests {
     fn a_skill_that_never_begins_is_over_after_a_while() {
         let mut track = SkillTrack::default();
         track.command(&kick(1));
-        for _ in 0..=PATIENCE {
+        for _ in 0..=BEGIN_READINGS {
             track.observe(BodyPhase::Fallen(Direction::Front));
         }
         assert_eq!((track.motion(), track.done()), (None, (1, SkillResult::Refused)));

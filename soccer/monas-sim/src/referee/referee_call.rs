@@ -1,4 +1,4 @@
-//! Decisions of a person who watches the match, which the embedded referee makes its own.
+//! Decisions of a person who watches the match, which the embedded referee adopts.
 
 use super::{GameState, Penalty, Referee};
 use crate::state::WorldView;
@@ -33,7 +33,7 @@ impl Referee {
         self.is_stopped
     }
 
-    /// Makes a decision of a person its own; the world carries it out in its next step.
+    /// Adopts a decision of a person; the world carries it out in its next step.
     pub(crate) fn call(&mut self, call: RefereeCall, scene: &WorldView<'_>) -> Result<(), Error> {
         use GameState::{Finished, Initial, Playing, Ready, Set};
         if self.order.is_some() {

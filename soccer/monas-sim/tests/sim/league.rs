@@ -79,7 +79,7 @@ fn states_penalties_and_goals_follow_the_announcements() {
     steps(&field, 1);
     assert!(field.with_world(|world| world.robots()[4].on_field));
 
-    // A ball in the goal is no goal until the referee says so.
+    // A ball in the goal is not a goal until the referee says so.
     let (goal, roll) = (Vector::new(2.9, 0.0), Vector::new(1.0, 0.0));
     field.change(|world| world.place_ball(goal, roll)).unwrap();
     steps(&field, 300);

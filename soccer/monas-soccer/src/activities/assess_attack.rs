@@ -88,8 +88,8 @@ struct BallObservation {
     at_foot: bool,
 }
 
-/// The field players of the team. A mate that is seen near the place that it reported is where it
-/// is seen; one that is seen and has not reported stands still.
+/// The field players of the team. A mate seen near its reported position is taken to be where it is
+/// seen; one that is seen but has not reported is taken to stand still.
 fn mates(
     blackboard: &Blackboard,
     ground: &RobotAndField,
@@ -112,8 +112,8 @@ fn mates(
     mates
 }
 
-/// Distance within which a mate that is seen is the one that reported, metres, and how much this
-/// grows with the age of the report, m/s.
+/// Distance within which a seen mate is identified with a report, metres, and its growth with the
+/// age of the report, m/s.
 const SAME: f64 = 0.5;
 const SPEED: f64 = 0.3;
 

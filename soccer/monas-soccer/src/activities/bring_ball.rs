@@ -18,9 +18,9 @@ use crate::functionality::walk::Walk;
 use crate::{AttackPart, Ball, topics};
 
 /// Polling interval; the activity is also called as soon as the ball is seen.
-pub(super) const LOOK: Duration = Duration::from_millis(100);
+pub(super) const POLL_INTERVAL: Duration = Duration::from_millis(100);
 /// Time limit, after which it has failed.
-const PATIENCE: Duration = Duration::from_secs(25);
+const TIMEOUT: Duration = Duration::from_secs(25);
 /// A ball that is not seen for this long is lost, seconds.
 pub(super) const LOST: f64 = 2.5;
 /// Distance from the ball within which the robot aligns instead of approaching, metres.
@@ -47,7 +47,7 @@ impl BringBall {
         target: impl Fn(&Blackboard, &Ball, Option<&RobotAndField>) -> Point2<f64>,
     ) -> Result<Progress, BoxError> {
         let now = blackboard.now();
-        let late = now.since(*self.since.get_or_insert(now)) > PATIENCE;
+        let late = now.since(*self.since.get_or_insert(now)) > TIMEOUT;
         let Some(ball) = blackboard.read(topics::BALL).copied().filter(|ball| ball.age < LOST) else {
             return Ok(Progress::Done);
         };
@@ -59,7 +59,7 @@ impl BringBall {
         request_gaze(blackboard, self.head.look_at(ball.position()))?;
         let walk = self.walk(blackboard, &ball, target, ground.as_ref());
         request_walk(blackboard, walk)?;
-        Ok(Progress::after(LOOK))
+        Ok(Progress::after(POLL_INTERVAL))
     }
 
     fn is_there(&self, ball: &Ball, target: Point2<f64>) -> bool {
@@ -209,7 +209,7 @@ mod tests {
         assert!(kept_out.run(&mut activity), "no field player may enter the own area");
         let mut stage = stage((2.0, 0.0));
         assert!(!stage.run(&mut activity));
-        assert!(stage.wait(PATIENCE + LOOK).run(&mut activity));
+        assert!(stage.wait(TIMEOUT + POLL_INTERVAL).run(&mut activity));
         assert!(!stage.run(&mut activity), "a restart resets the time limit");
     }
 }

@@ -11,10 +11,10 @@ use crate::functionality::ball_filter::BallModel;
 use crate::functionality::field::Goal;
 use crate::{MotionKind, topics};
 
-/// How hard a kick is.
+/// The strength of a kick.
 #[derive(Clone, Copy, Debug, Default)]
 struct Strength {
-    /// Distance from the goal beyond which a kick is soft, metres; zero: none is.
+    /// Distance from the goal beyond which a kick is soft, metres; zero: no kick is soft.
     soft_beyond: f64,
     /// Distance before the goal at which the ball of a soft kick comes to rest, metres.
     rest: f64,
@@ -58,8 +58,8 @@ macro_rules! kick {
         $(#[$documentation])*
         ///
         /// Parameters: a kick from more than `soft_beyond` (m) from the goal, with an opponent
-        /// within 1 m of the ball, is so soft that the ball comes to rest `rest` (m) before the
-        /// goal. By default every kick is as hard as the body can.
+        /// within 1 m of the ball, is soft: the ball comes to rest `rest` (m) before the goal. By
+        /// default every kick is as hard as the body can.
         #[derive(Clone, Copy, Debug, Default)]
         pub struct $name {
             under_way: RunningSkill,

@@ -5,8 +5,8 @@ use monas::{Activity, Blackboard, BoxError, Progress, Topics};
 use crate::{LedRequest, convert, topics};
 
 /// Shows the state of the game on the chest LED, the colour of the team on the left foot and the
-/// kick-off on the right one, as the rules ask, whether the ball is seen on the left eye, and the
-/// confidence of localisation on the right eye. MotionController, the only commander of the body,
+/// kick-off on the right one, as the rules require; the left eye shows whether the ball is seen,
+/// the right eye the confidence of localisation. MotionController, the only commander of the body,
 /// forwards the colours.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct LedHandler {

@@ -12,8 +12,8 @@ use crate::functionality::head::{Gaze, HeadController};
 use crate::topics;
 
 /// Looks for a moment at the goal that is nearer to the direction of the ball. A robot that does
-/// not know where that is looks to its sides instead, one after the other, past what lies between.
-/// The body does not move.
+/// not know where the goals are looks to its left and right instead, in turn, past the directions
+/// in between. The body does not move.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct LookAtGoal {
     head: HeadController,
@@ -22,9 +22,10 @@ pub struct LookAtGoal {
     side: Option<f64>,
 }
 
-/// How long the look lasts: shorter than a request to walk holds.
+/// Duration of the look, shorter than the validity of a request to walk.
 const LOOK: Duration = Duration::from_millis(400);
-/// How long the look to a side lasts: the head turns so far, and the ball is not yet forgotten.
+/// Duration of the look to a side: long enough for the head to turn, and short enough to keep the
+/// estimate of the ball.
 const LOOK_ASIDE: Duration = Duration::from_millis(700);
 /// Confidence of the pose below which a robot does not know where the goals are.
 const LOST: f64 = 0.5;

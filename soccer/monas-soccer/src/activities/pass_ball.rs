@@ -6,7 +6,7 @@ use monas::{Activity, Blackboard, BoxError, Progress, Topics};
 use monas_robot::Skill;
 use narukom::Timestamp;
 
-use super::bring_ball::{LOOK, mate};
+use super::bring_ball::{POLL_INTERVAL, mate};
 use super::motion_requests::{KickStyle, request_gaze, request_walk};
 use super::shot::ground;
 use super::skills::{RunningSkill, perform};
@@ -45,7 +45,7 @@ impl Activity for PassBall {
                     return Ok(progress);
                 }
                 self.kicked_at = Some(now);
-                Ok(Progress::after(LOOK))
+                Ok(Progress::after(POLL_INTERVAL))
             }
         }
     }
@@ -90,7 +90,7 @@ impl PassBall {
             request_gaze(blackboard, self.head.look_at(ball.position()))?;
             request_walk(blackboard, Walk::turning(turn_to(ball.bearing)))?;
         }
-        Ok(Progress::after(LOOK))
+        Ok(Progress::after(POLL_INTERVAL))
     }
 }
 

@@ -1,4 +1,4 @@
-//! Search for the ball.
+//! Searches for the ball.
 
 use monas::{Activity, Blackboard, BoxError, Progress, Topics};
 

@@ -10,9 +10,9 @@ use super::motion_requests::{KickStyle, request_skill};
 use crate::{MotionKind, topics};
 
 /// Polling interval for the end of a motion; a message that reports it is handled at once.
-const LOOK: Duration = Duration::from_millis(100);
+const POLL_INTERVAL: Duration = Duration::from_millis(100);
 /// Time after which a motion whose end is not reported has failed: no activity commands the body.
-const PATIENCE: Duration = Duration::from_secs(20);
+const TIMEOUT: Duration = Duration::from_secs(20);
 
 /// A motion in progress: its number and start time.
 pub(super) type RunningSkill = Option<(u64, Timestamp)>;
@@ -27,19 +27,19 @@ pub(super) fn perform(
     let now = blackboard.now();
     let Some((number, since)) = *under_way else {
         *under_way = Some((request_skill(blackboard, kind, style)?, now));
-        return Ok(Progress::after(LOOK));
+        return Ok(Progress::after(POLL_INTERVAL));
     };
     let over = blackboard.read(topics::MOTION_STATE).is_some_and(|state| state.done >= number);
     if over {
         *under_way = None;
         return Ok(Progress::Done);
     }
-    if now.since(since) > PATIENCE {
+    if now.since(since) > TIMEOUT {
         *under_way = None;
-        let seconds = PATIENCE.as_secs();
+        let seconds = TIMEOUT.as_secs();
         return Err(format!("the end of {} was not reported for {seconds} s", kind.as_str_name()).into());
     }
-    Ok(Progress::after(LOOK))
+    Ok(Progress::after(POLL_INTERVAL))
 }
 
 macro_rules! skill {
@@ -127,7 +127,7 @@ mod tests {
     fn a_motion_that_is_not_performed_fails() {
         let (mut stage, mut activity) = (ActivityFixture::new(), RightDive::default());
         stage.run(&mut activity);
-        stage.wait(PATIENCE + LOOK);
+        stage.wait(TIMEOUT + POLL_INTERVAL);
         let error = stage.fails(&mut activity).unwrap();
         assert_eq!(error, "the end of DIVE_RIGHT was not reported for 20 s");
     }

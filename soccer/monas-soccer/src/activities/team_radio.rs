@@ -16,8 +16,8 @@ use crate::{MotionKind, MotionPhase, MotionResult, PlayerState, Team, TeamReport
 /// Sends this player's pose, its estimate of the ball and the times of its kicks to the team, and
 /// collects the reports of team mates. A report is valid for four seconds.
 ///
-/// A team may send a limited number of messages in a match. A report is sent when it says enough
-/// that the last one did not, and the more so the fewer messages are left.
+/// A team may send a limited number of messages in a match. A report is sent if it is sufficiently
+/// new compared with the last one; the threshold rises as fewer messages are left.
 ///
 /// Parameter `rate` (1/s): the number of reports that this player may send on average.
 #[derive(Clone, Copy, Debug, Default)]
@@ -72,7 +72,7 @@ impl TeamRadio {
         self.kicks.observe_request(blackboard.now(), number, motion.is_pass);
     }
 
-    /// Sends a report, if it is worth one of the messages that are left.
+    /// Sends a report, if its value justifies one of the remaining messages.
     fn say(&mut self, blackboard: &mut Blackboard, report: TeamReport) -> Result<(), BoxError> {
         let now = blackboard.now();
         let worth = match &self.said {
@@ -145,7 +145,8 @@ fn understood(words: &[u8]) -> Option<TeamReport> {
     numbers.into_iter().all(f64::is_finite).then_some(report)
 }
 
-/// How much a report says that the last one, sent `age` ago, did not; one for half a metre.
+/// The value of a report compared with the last one, sent `age` ago; a displacement of half a metre
+/// counts 1.
 fn news(last: &TeamReport, report: &TeamReport, age: Duration) -> f64 {
     let age = age.as_secs_f64();
     let moved = libm::hypot(report.x - last.x, report.y - last.y) / 0.5;

@@ -22,7 +22,7 @@ pub struct TurnAround {
     turning: Option<(Timestamp, f64)>,
 }
 
-/// A turn that is not requested for so long is over.
+/// Time without a request after which a turn is over.
 const PAUSE: Duration = Duration::from_secs(1);
 
 impl Default for TurnAround {

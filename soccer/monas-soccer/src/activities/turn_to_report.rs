@@ -9,7 +9,7 @@ use crate::functionality::geometry::angle_of;
 use crate::functionality::walk::{Walk, turn_to};
 use crate::topics;
 
-/// Turns on the spot to where the newest report of a team mate has the ball. Does nothing without a
+/// Turns on the spot towards the ball of the newest report of a team mate. Does nothing without a
 /// report or pose.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct TurnToReport;

@@ -14,14 +14,14 @@ pub struct WaitForBallMessage {
 }
 
 /// Polling interval; the activity is also called as soon as a message arrives.
-const LOOK: Duration = Duration::from_millis(100);
+const POLL_INTERVAL: Duration = Duration::from_millis(100);
 
 impl Activity for WaitForBallMessage {
     fn execute(&mut self, blackboard: &mut Blackboard) -> Result<Progress, BoxError> {
         let newest =
             blackboard.sample(topics::BALL).map(|ball| (ball.header.publisher, ball.header.sequence));
         if newest == self.used {
-            return Ok(Progress::after(LOOK));
+            return Ok(Progress::after(POLL_INTERVAL));
         }
         self.used = newest;
         Ok(Progress::Done)

@@ -16,15 +16,15 @@ use crate::{Ball, topics};
 /// Parameters (m), which depend on the size of the robot: `stand_off`, the distance from the ball
 /// at which the path ends; `circle`, the radius of the circle on which the robot walks round the
 /// ball; `face_target`, the distance from the end at which it faces the target. Parameter
-/// `foresight` (s): how far it looks ahead to walk to where it meets a rolling ball; by default not
-/// at all.
+/// `foresight` (s): the time for which it predicts a rolling ball to walk to the meeting point; by
+/// default zero.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct WalkTowardsBall {
     approach: Approach,
     foresight: f64,
 }
 
-/// The speed at which a robot comes nearer to a place, m/s: its way is not straight.
+/// The effective speed of a robot towards a place, m/s: its path is not straight.
 const PROGRESS: f64 = 0.2;
 /// The deceleration of a rolling ball, m/s².
 const ROLLING_DECELERATION: f64 = 0.3;

@@ -6,7 +6,7 @@ use monas::{Activity, Blackboard, BoxError, Progress, Topics};
 use nalgebra::Point2;
 use narukom::Timestamp;
 
-use super::bring_ball::{LOOK, LOST};
+use super::bring_ball::{LOST, POLL_INTERVAL};
 use super::motion_requests::{request_gaze, request_walk};
 use super::shot::{ground, others};
 use super::support_mate::walk_to;
@@ -23,12 +23,12 @@ pub struct WalkTowardsGoal {
 }
 
 /// How long a pass is awaited.
-const PATIENCE: Duration = Duration::from_secs(30);
+const TIMEOUT: Duration = Duration::from_secs(30);
 
 impl Activity for WalkTowardsGoal {
     fn execute(&mut self, blackboard: &mut Blackboard) -> Result<Progress, BoxError> {
         let now = blackboard.now();
-        let late = now.since(*self.since.get_or_insert(now)) > PATIENCE;
+        let late = now.since(*self.since.get_or_insert(now)) > TIMEOUT;
         let attack = blackboard.read(topics::ATTACK).copied().unwrap_or_default();
         if late || attack.ball_is_passed || attack.part() != AttackPart::CenterFor {
             self.since = None;
@@ -36,7 +36,7 @@ impl Activity for WalkTowardsGoal {
         }
         let ball = blackboard.read(topics::BALL).copied().filter(|ball| ball.age < LOST);
         let (Some(ball), Some(ground)) = (ball, ground(blackboard)) else {
-            return Ok(Progress::after(LOOK));
+            return Ok(Progress::after(POLL_INTERVAL));
         };
         let here = Point2::from(ground.field_from_robot.translation.vector);
         let place = support_place(&ground.field, ground.field_from_robot * ball.position(), here, AHEAD);
@@ -44,7 +44,7 @@ impl Activity for WalkTowardsGoal {
         let walk = walk_to(ground.field_from_robot.inverse_transform_point(&place), &ball, &obstacles);
         request_gaze(blackboard, self.head.look_at(ball.position()))?;
         request_walk(blackboard, walk)?;
-        Ok(Progress::after(LOOK))
+        Ok(Progress::after(POLL_INTERVAL))
     }
 
     fn stop(&mut self, _: &mut Blackboard) {
@@ -106,7 +106,7 @@ mod tests {
         assert!(!unseen.run(&mut WalkTowardsGoal::default()), "the mate may see it");
         let (mut waiting, mut activity) = (stage(pose, ball(1.0, 0.0)), WalkTowardsGoal::default());
         assert!(!waiting.run(&mut activity));
-        assert!(waiting.wait(PATIENCE + LOOK).run(&mut activity));
+        assert!(waiting.wait(TIMEOUT + POLL_INTERVAL).run(&mut activity));
         assert!(!waiting.run(&mut activity), "a restart resets the time limit");
     }
 }

@@ -21,13 +21,13 @@ const WAY: f64 = 0.3;
 const PASS: (f64, f64) = (0.7, 3.5);
 /// Accepted error of the heading for a kick, radians.
 const FACING: f64 = 0.22;
-/// How long after a pass the ball belongs to the partner: it rolls, and the partner walks to it and
-/// round it, seconds.
+/// Time after a pass for which the ball belongs to the partner, seconds: it rolls, and the partner
+/// walks to it and round it.
 const PASSED: f64 = 20.0;
 /// How long a shot counts as outcome, seconds.
 const SHOT: f64 = 1.0;
-/// By how much an opponent must be nearer to the ball than the team to have it, metres: reports of
-/// mates that walk to the ball are old.
+/// Margin by which an opponent must be nearer to the ball than the team to count as having it,
+/// metres: reports of mates that walk to the ball are old.
 const HAS: f64 = 0.1;
 /// Distance from the goal beyond which a pass is better than a shot, metres: from 2 m and more a
 /// goalie lets in a few of a hundred shots.
@@ -37,12 +37,12 @@ const SHOT_LENGTH: f64 = 1.8;
 const BEGIN: f64 = 1.2;
 /// Prediction time for a rolling ball, seconds.
 const FORESIGHT: f64 = 0.4;
-/// Way that turning by a radian costs, metres.
+/// Cost of turning by a radian, metres of walk.
 const TURN_COST: f64 = 0.15;
-/// Way that walking round the ball by a radian costs, metres.
+/// Cost of walking round the ball by a radian, metres of walk.
 const ROUND_COST: f64 = 0.25;
-/// How long a player leaves the ball to its mates after a pass, seconds, and what that costs as
-/// way, metres.
+/// Time for which a player leaves the ball to its mates after a pass, seconds, and the
+/// corresponding cost, metres of walk.
 const YIELDING: f64 = 6.0;
 const YIELD_COST: f64 = 2.0;
 

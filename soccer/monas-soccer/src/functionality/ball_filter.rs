@@ -5,9 +5,9 @@
 //! the constant deceleration of a rolling ball. The state is kept in the robot's frame, so that
 //! errors of localisation do not affect it; odometry transforms it.
 //!
-//! A sighting that does not fit the ball is a candidate. It is believed when a second one fits it
-//! within a few pictures, in place of a ball that was not seen meanwhile (the ball was kicked or
-//! moved). A single false sighting (an orange shoe) so changes nothing.
+//! A sighting that does not fit the ball is a candidate. It is accepted when a second sighting fits
+//! it within a few pictures, and replaces a ball that was not seen meanwhile (the ball was kicked
+//! or moved). A single false sighting (an orange shoe) thus changes nothing.
 
 use std::time::Duration;
 
@@ -34,8 +34,8 @@ pub struct BallModel {
 }
 
 impl BallModel {
-    /// The speed at which a ball has to start, m/s, to arrive after a way in metres at a speed in
-    /// m/s. Zero, to be taken as the fastest, for no way at all.
+    /// The initial speed of a ball, m/s, that arrives at a given distance, in metres, with a given
+    /// speed, in m/s. Zero, which requests the fastest kick, for a distance of zero.
     pub fn speed_for(&self, way: f64, arrival: f64) -> f64 {
         libm::sqrt((2.0 * self.rolling_deceleration * way + arrival * arrival).max(0.0))
     }

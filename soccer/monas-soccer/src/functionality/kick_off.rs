@@ -23,12 +23,12 @@ const BEFORE_LINE: f64 = 0.13;
 const PLACES: [(f64, f64); 5] = [(0.35, 0.45), (0.35, -0.45), (0.6, 0.0), (0.55, 0.75), (0.55, -0.75)];
 /// Errors of place, metres, and heading, radians, below which a robot stands.
 const CONTENT: (f64, f64) = (0.12, 0.2);
-/// Confidence of the pose below which a robot looks around before it walks.
+/// Confidence of the pose below which a robot turns around for landmarks before it walks.
 const UNSURE: f64 = 0.2;
 /// The turn with which it looks around, rad/s, and how long: a whole turn.
 const LOOK_AROUND: f64 = 0.6;
 const LOOK_TIME: Duration = Duration::from_millis(10_500);
-/// Time without a call after which a walk is another one.
+/// Time without a call after which a call begins a new walk.
 const PAUSE: Duration = Duration::from_secs(1);
 /// Distance below which a robot turns to its final heading while it walks, metres.
 const ARRIVAL: f64 = 0.4;

@@ -46,7 +46,7 @@ impl Kicks {
         self.passed_at.map(|at| now.since(at).as_secs_f64())
     }
 
-    /// Seconds since the last kick that was no pass, if there was one.
+    /// Seconds since the last kick that was not a pass, if there was one.
     pub fn since_shot(&self, now: Timestamp) -> Option<f64> {
         self.shot_at.map(|at| now.since(at).as_secs_f64())
     }

@@ -21,7 +21,7 @@ pub enum GoalPost {
 pub enum Landmark {
     /// A post of a goal.
     Post(Goal, GoalPost),
-    /// A post of a goal whose paint does not tell which one it is.
+    /// A post of a goal whose colour does not identify the goal.
     PostOfEitherGoal(GoalPost),
     /// The corner of two lines: of the field or of a goal area.
     Corner,
@@ -49,7 +49,7 @@ impl LandmarkSighting {
     }
 }
 
-/// The most places at which one landmark can be.
+/// The largest number of places of a kind of landmark.
 const MOST_PLACES: usize = 8;
 
 /// The places in the field at which a landmark can be.

@@ -43,7 +43,7 @@ struct PoseHypothesis {
 
 /// The most hypotheses.
 const MOST: usize = 12;
-/// Part of the sightings that show something else: the least likelihood.
+/// Fraction of outliers among the sightings: the least likelihood.
 const OUTLIER: f64 = 0.03;
 /// Weight of a new hypothesis, and the least weight of one that is kept.
 const NEW_WEIGHT: f64 = 0.02;

@@ -50,7 +50,7 @@ pub struct PendingRequest {
     pub ball_speed: f64,
     /// Counts the requested skills.
     pub number: u64,
-    /// How old the request is.
+    /// The age of the request.
     pub age: Duration,
 }
 
@@ -105,7 +105,7 @@ pub struct MotionCommand {
 /// Age at which a request expires.
 const FRESH: Duration = Duration::from_millis(500);
 /// Time without a report of the end of a skill after which it counts as lost.
-const PATIENCE: Duration = Duration::from_secs(10);
+const TIMEOUT: Duration = Duration::from_secs(10);
 
 /// The arbiter between behaviours and body. [`MotionArbiter::step`] is called once per cycle.
 #[derive(Clone, Debug)]
@@ -170,7 +170,7 @@ impl MotionArbiter {
 
     fn finish_skill(&mut self, now: Timestamp, report: BodyReport) {
         let ended = report.skill_done >= self.order.skill_number;
-        let lost = self.under_way.is_some_and(|since| now.since(since) > PATIENCE);
+        let lost = self.under_way.is_some_and(|since| now.since(since) > TIMEOUT);
         if ended || lost || report.posture == Posture::Lifted {
             self.under_way = None;
             let end = report.skill_end.filter(|_| ended).unwrap_or(SkillEnd::Interrupted);

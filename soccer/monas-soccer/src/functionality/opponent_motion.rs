@@ -9,7 +9,8 @@ use super::field::FieldModel;
 /// Opponents that play often stand for a while, too: at the ball, after a fall, or where they cover
 /// the goal. Over three matches each way, plain attackers moved in 24 % of the windows, and players
 /// that stand still in 5 %, by collisions and errors of odometry. So a motion outweighs several
-/// windows without one, and opponents count as moving until much says otherwise.
+/// windows without one, and opponents count as moving until there is strong evidence to the
+/// contrary.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub struct OpponentMotion {
     /// Windows without motion less the weight of windows with motion.

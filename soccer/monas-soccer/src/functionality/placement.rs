@@ -1,8 +1,8 @@
 //! Placements of the robot by a person: that it was put down, and where that can be.
 //!
-//! The robot feels that it is lifted, and gets no pose at which it stands afterwards. The rules
-//! leave few places: the own half, before a half and for a kick-off, and the ends of the
-//! halfway line after a penalty.
+//! The robot detects that it is lifted, but not the pose at which it is put down. The rules leave
+//! few places: the own half, before a half and for a kick-off, and the ends of the halfway line
+//! after a penalty.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -11,7 +11,7 @@ use super::game::GamePhase;
 use super::geometry::pose;
 use super::localisation::PoseEstimate;
 
-/// How a robot came to its place.
+/// The kind of a placement.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub enum Placement {
     /// Into its own half, before a half or for a kick-off.
@@ -21,7 +21,7 @@ pub enum Placement {
     HalfwayLine,
 }
 
-/// Counts the placements by hand, from what the feet feel.
+/// Counts the placements by a person, from the contacts of the feet.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct PlacementTracker {
     count: u32,

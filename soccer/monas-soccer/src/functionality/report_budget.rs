@@ -1,10 +1,10 @@
 //! Which reports a player sends to its team.
 //!
 //! A team has a number of messages for a match. Each player may send `rate` of them a second on
-//! average; what it does not send now it may send later, up to [`SAVED`] messages. A report is
-//! worth what it says that the last one did not: a kick, a ball that was found or lost, a robot or
-//! a ball that is elsewhere, and time. With all messages saved little is worth one; with none left,
-//! only the next of an even schedule is sent.
+//! average; what it does not send now it may send later, up to [`SAVED`] messages. The value of a
+//! report is what it adds to the last one: a kick, a ball that was found or lost, a displacement of
+//! robot or ball, and the time passed. With all messages saved a small value suffices; with none
+//! left, reports follow an even schedule.
 
 use std::time::Duration;
 
@@ -12,7 +12,7 @@ use narukom::Timestamp;
 
 /// The most messages that a player saves.
 const SAVED: f64 = 12.0;
-/// The worth of a report for which a message is spent while all are saved, and while one is left.
+/// The value of a report that justifies a message while all are saved, and while one is left.
 const WORTH: (f64, f64) = (0.6, 2.0);
 
 /// The messages that a player may send.
@@ -33,7 +33,8 @@ impl Default for ReportBudget {
 }
 
 impl ReportBudget {
-    /// Spends a message if the report is worth it. Returns whether it is to be sent.
+    /// Spends a message if the value of the report justifies it. Returns whether the report is to
+    /// be sent.
     pub fn spend(&mut self, now: Timestamp, worth: f64) -> bool {
         let elapsed = self.counted_at.map_or(Duration::ZERO, |at| now.since(at));
         self.counted_at = Some(now);
@@ -55,7 +56,8 @@ mod tests {
         Timestamp::from_secs_f64(seconds)
     }
 
-    /// The number of reports sent in a match of 600 s, each of which is worth as much a second.
+    /// The number of reports sent in a match of 600 s, with a value that grows at this rate per
+    /// second.
     fn sent(worth_a_second: f64) -> usize {
         let (mut budget, mut last) = (ReportBudget::default(), 0.0);
         let moments = (0..6000).map(|tenth| f64::from(tenth) / 10.0);
