@@ -96,17 +96,16 @@ pub(crate) enum Command {
     /// Monitor the agents of a run and the load of their activities.
     ///
     /// On a terminal the view is refreshed until `q` is pressed; otherwise one interval is printed.
-    /// Shares are of one core. Activities that use nearly a whole core, block, fail, leak memory or
-    /// do not return are marked.
+    /// Shares refer to one core. Activities that use nearly a whole core, block, fail, leak memory
+    /// or do not return are marked.
     #[cfg(unix)]
     #[command(after_help = "Example: monas top --host blue-2")]
     Top(TopArguments),
     /// View a run or a tape in the browser: charts, agents, topics, log, and the field.
     ///
     /// Serves a page on this computer, which needs no other program and no network, and prints its
-    /// address. The page only looks: it does not change the run, which does not wait for it.
-    /// `monas run --studio` does the same from within a run. A tape is played, and opened at any
-    /// moment.
+    /// address. The page is read-only, and the run does not wait for it. `monas run --studio` does
+    /// the same from within a run. A tape can be played back, and opened at any moment.
     #[cfg(unix)]
     #[command(after_help = "Example: monas studio match.mcap")]
     Studio(StudioArguments),
@@ -149,7 +148,7 @@ pub(crate) enum Command {
     /// Referee robots elsewhere by the league's protocol, as a GameController does.
     ///
     /// Reads decisions from standard input, one per line, and sends the state of the game twice a
-    /// second. It says which players report. The referee of a match decides by itself: see `monas
+    /// second. It shows which players report. The referee of a match decides by itself: see `monas
     /// run --referee`.
     #[cfg(feature = "soccer")]
     Referee(RefereeArguments),
@@ -157,7 +156,7 @@ pub(crate) enum Command {
     ///
     /// Directly on the robot interface, as Monas agents with one activity for all decisions, and by
     /// ASEME from liveness formulas; all three with the same skills. Plays matches against the team
-    /// of config/match.xml, so that it takes a minute.
+    /// of config/match.xml, which takes about a minute.
     #[cfg(feature = "soccer")]
     #[command(after_help = "Example: monas eval --seeds 4")]
     Eval(EvalArguments),

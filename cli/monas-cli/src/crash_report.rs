@@ -15,7 +15,7 @@ static RECORDING: OnceLock<CrashFlush> = OnceLock::new();
 /// Whether the command ends by itself.
 static IS_ENDING: AtomicBool = AtomicBool::new(false);
 
-/// Has a fatal fault flush this recording. A process has one run.
+/// Lets a fatal fault flush this recording. A process has one run.
 pub(crate) fn flush_in_crash(tape: &Tape) {
     let _ = RECORDING.set(tape.crash_flush());
 }
@@ -39,9 +39,9 @@ mod linux {
 
     use super::{IS_ENDING, RECORDING};
 
-    /// Interval and number of looks at the flush of the recording.
-    const LOOK: Duration = Duration::from_millis(5);
-    const LOOKS: u32 = 100;
+    /// Interval and number of checks whether the recording has been flushed.
+    const FLUSH_CHECK_INTERVAL: Duration = Duration::from_millis(5);
+    const FLUSH_CHECKS: u32 = 100;
 
     /// Reports fatal faults while it exists.
     pub(crate) struct CrashReport {
@@ -124,11 +124,11 @@ mod linux {
     fn flush_recording() {
         let Some(recording) = RECORDING.get() else { return };
         recording.request();
-        for _ in 0..LOOKS {
+        for _ in 0..FLUSH_CHECKS {
             if recording.is_done() {
                 return write_stderr("  the recording reaches up to here\n");
             }
-            std::thread::sleep(LOOK);
+            std::thread::sleep(FLUSH_CHECK_INTERVAL);
         }
         write_stderr("  the recording may lack the last second\n");
     }

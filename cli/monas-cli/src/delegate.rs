@@ -55,8 +55,8 @@ pub(crate) fn delegate() {
     }
 }
 
-/// Takes generated crates that were deleted out of the project's files: Cargo would not build the
-/// program that does it.
+/// Removes deleted generated crates from the project's manifests: with them Cargo would not build
+/// the program that does this otherwise.
 fn link_again(here: &Path) {
     let Some((folder, _)) = project_program(here) else { return };
     let linked = Project::around(&folder.join("Cargo.toml")).and_then(|project| project.link());

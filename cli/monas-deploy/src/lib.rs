@@ -4,11 +4,11 @@
 //! what the configuration names, and the hashes of all files. A [`Deployment`] copies it to a
 //! [`Robot`]. The robot uses it only after every file matches its hash and the program has started
 //! once. Then the release becomes the current one and its service starts; if the program does not
-//! keep running, the release before it becomes the current one again. So a robot is never left with
-//! half a program.
+//! keep running, the release before it becomes the current one again. So a robot never runs a
+//! partial release.
 //!
-//! On the robot a POSIX shell suffices: the steps are tasks of the script `robot.sh`, which goes
-//! along with each call of ssh.
+//! On the robot a POSIX shell suffices: the steps are tasks of the script `robot.sh`, which each
+//! call of ssh transfers.
 //!
 //! ```no_run
 //! use std::path::Path;

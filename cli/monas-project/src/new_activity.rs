@@ -25,8 +25,8 @@ pub struct NewActivity {
 /// Creates an activity in the project around the folder `here`.
 ///
 /// # Errors
-/// The name is no name of a type, no project is around the folder, the file exists, or it cannot be
-/// written.
+/// The name is not a name of a type, no project is around the folder, the file exists, or it cannot
+/// be written.
 pub fn create_activity(name: &str, here: &Path) -> Result<NewActivity, Error> {
     let project = project_for(name, here)?;
     let path = project.join("activities").join(format!("{}.rs", snake_case(name)));

@@ -25,8 +25,8 @@ pub struct NewModule {
 /// Creates an activity as a module in the project around the folder `here`.
 ///
 /// # Errors
-/// The name is no name of a type or its package name is taken, no project is around the folder, the
-/// module exists, or a file cannot be written.
+/// The name is not a name of a type or its package name is taken, no project is around the folder,
+/// the module exists, or a file cannot be written.
 pub fn create_module(name: &str, here: &Path) -> Result<NewModule, Error> {
     let project = project_for(name, here)?;
     let package = snake_case(name);

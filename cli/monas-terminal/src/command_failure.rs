@@ -19,7 +19,7 @@ pub enum CommandFailure {
     Usage(String),
     /// An operation failed.
     Failed(Format, String),
-    /// The peer of a connection is not there.
+    /// The peer of a connection does not answer.
     Unreachable(Format, String),
     /// Standard output or standard error cannot be written.
     Output(io::Error),

@@ -14,7 +14,7 @@ pub enum Exit {
     Usage,
     /// 3: a configuration or a model is invalid; nothing ran.
     Invalid,
-    /// 4: the peer of a connection is not there.
+    /// 4: the peer of a connection does not answer.
     Unreachable,
     /// 5: a check does not hold: a replay differs from its recording, or a check of a model finds
     /// an error.

@@ -4,7 +4,7 @@
 //! what they are capable of (colours, progress bars). It returns an [`Exit`], or a
 //! [`CommandFailure`] that knows its report and its exit status. This is the only crate that
 //! renders a [`yase::Diagnostic`] ([`report`]) or handles Ctrl-C ([`Interrupt`]), so that all
-//! commands look and end alike. It is apart from the commands since it knows none of them.
+//! commands look and end alike. It is a separate crate, since it depends on no command.
 //!
 //! Commands write to the given writers instead of the streams of the process, so that tests read
 //! what a user would see:

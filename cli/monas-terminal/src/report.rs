@@ -130,7 +130,8 @@ fn drawn(diagnostic: &Diagnostic, colour: bool) -> String {
     text
 }
 
-/// A text of a person as it can be shown: without control characters, and not longer than a screen.
+/// A text of the user in displayable form: without control characters, and not longer than a
+/// screen.
 fn shown(text: &str) -> String {
     let mut shown: String = text.chars().take(MESSAGE).map(printable).collect();
     if text.chars().nth(MESSAGE).is_some() {

@@ -37,11 +37,11 @@ impl DoctorArguments {
 /// The result of a check, best first.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
 enum CheckStatus {
-    /// Nothing to repair.
+    /// The check has passed.
     Ok,
-    /// Agents run, but not as well as they could.
+    /// Agents run, with limitations.
     Warning,
-    /// Something does not run.
+    /// Something cannot run.
     Error,
 }
 

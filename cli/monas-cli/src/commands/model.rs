@@ -93,8 +93,8 @@ pub(crate) enum ModelCommand {
     Compose(ComposeArguments),
     /// Measure which states, transitions and guards of their charts recorded runs covered.
     ///
-    /// A guard was true if its transition fired, and false if a transition fired from the same
-    /// state that is tried after it.
+    /// A guard counts as true if its transition fired, and as false if a transition of the same
+    /// state fired that is tried after it.
     #[command(
         after_help = "Example: monas run config/match.xml --record match.mcap ; monas model coverage match.mcap --draw coverage"
     )]

@@ -15,8 +15,8 @@ use monas_terminal::{CommandFailure, CommandOutput, Exit, Format, Interrupt, Wal
 
 use super::run::league::RuleBookArgument;
 
-/// Interval at which input, clocks and reports are looked at.
-const LOOK: Duration = Duration::from_millis(20);
+/// Interval at which input, clocks and reports are polled.
+const CHECK_INTERVAL: Duration = Duration::from_millis(20);
 
 /// Arguments of `monas referee`.
 #[derive(Args, Debug)]
@@ -42,8 +42,8 @@ pub(crate) struct RefereeArguments {
     /// The rule book: Standard Platform League (version 18) or Humanoid Soccer League (version 19).
     #[arg(long, value_name = "LEAGUE", value_enum, default_value = "spl")]
     rules: RuleBookArgument,
-    /// How long the beginning of play and goals are hidden, since robots hear the whistle; 15s in
-    /// the league.
+    /// The delay with which the beginning of play and goals are announced, since robots should hear
+    /// the whistle; 15s in the league.
     #[arg(long, value_name = "DURATION", value_parser = duration::parse, default_value = "0s")]
     whistle_delay: Duration,
     /// The port for reports of robots.
@@ -96,7 +96,7 @@ pub(crate) fn execute(
         if referee.look(&input, clock.elapsed(), console)? {
             return Ok(if referee.has_failed { Exit::Failure } else { Exit::Success });
         }
-        clock.wait_until(clock.elapsed() + LOOK, &interrupt);
+        clock.wait_until(clock.elapsed() + CHECK_INTERVAL, &interrupt);
     }
     Ok(interrupt.exit().unwrap_or(Exit::Success))
 }
@@ -181,7 +181,7 @@ impl Referee {
                     self.reads_on_at = elapsed + wait;
                     Ok(())
                 }
-                None => Err(format!("`{seconds}` is no number of seconds: wait SECONDS")),
+                None => Err(format!("`{seconds}` is not a number of seconds: wait SECONDS")),
             });
         }
         let decided = OperatorCommand::parse(line).and_then(|command| self.game.decide(command));

@@ -65,9 +65,9 @@ pub(crate) struct RunArguments {
     /// Replace the files of the recording and of the log if they exist and no run is writing them.
     #[arg(long)]
     pub(crate) overwrite: bool,
-    /// Run a match in real time: the field, each body and the agents of each robot on threads of
-    /// their own, as on robots. Without a match, agents always run so. For simulated time that
-    /// passes as fast as real time see --pace.
+    /// Run a match in real time: the field, each body and the agents of each robot on separate
+    /// threads, as on robots. Agents without a match always run in real time. For simulated time
+    /// that passes as fast as real time see --pace.
     #[arg(long, conflicts_with = "pace")]
     pub(crate) realtime: bool,
     /// Show the field of a match from above, as text: redrawn in place on a terminal, one picture a
@@ -90,8 +90,8 @@ pub(crate) struct RunArguments {
     #[cfg(unix)]
     #[command(flatten)]
     pub(crate) listen: crate::commands::studio::ListenArgument,
-    /// How many seconds of simulated time pass in a second, at most: 0.5 for slow motion, 10 for
-    /// ten times real time. 1 with --studio, unlimited otherwise. Results do not depend on it.
+    /// The most simulated seconds per second of real time: 0.5 for slow motion, 10 for ten times
+    /// real time. 1 with --studio, unlimited otherwise. Results do not depend on it.
     #[arg(long, value_name = "FACTOR", value_parser = pace)]
     pub(crate) pace: Option<f64>,
     /// Run the agents of this robot of a match only, in real time, for example `blue-1`. The match

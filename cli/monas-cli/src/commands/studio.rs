@@ -50,7 +50,7 @@ pub(crate) struct ListenArgument {
     origins: Vec<String>,
     /// Let pages change the run, as `monas agent`, `monas topic pub` and `monas chart raise` do:
     /// agents, activities, models, messages, events, and the referee of a match. Without it they
-    /// only look.
+    /// are read-only.
     #[arg(long)]
     allow_control: bool,
     /// Let pages edit this model, or the models in this folder: as text, in the drawing of its
@@ -89,7 +89,7 @@ impl ListenArgument {
 }
 
 impl StudioArguments {
-    /// Whether models are edited and no run is asked for.
+    /// Whether models are edited and no run was requested.
     fn is_without_run(&self) -> bool {
         !self.listen.models.is_empty() && self.run.is_none() && !self.listen.allow_control
     }

@@ -10,7 +10,7 @@ use monas_project::differences;
 use monas_terminal::{CommandFailure, Format};
 use yase::{Diagnostic, Source};
 
-/// The configuration that is read when none is named.
+/// The default configuration.
 pub(crate) const DEFAULT_CONFIGURATION: &str = "config/agents.xml";
 
 /// The kind of a configuration.

@@ -16,10 +16,10 @@ use yase::Diagnostic;
 use super::connection::failure;
 
 /// How long to wait for a peer.
-const PATIENCE: Duration = Duration::from_secs(5);
+const TIMEOUT: Duration = Duration::from_secs(5);
 
 /// The interval between checks.
-const LOOK: Duration = Duration::from_millis(5);
+const CHECK_INTERVAL: Duration = Duration::from_millis(5);
 
 /// The remote ends of links.
 pub(crate) struct LinkTargets {
@@ -84,8 +84,8 @@ impl LinkTargets {
 
     fn wait_until(&self, is_so: impl Fn(&LinkTargets) -> bool) -> Result<(), CommandFailure> {
         let clock = WallClock::start();
-        while !is_so(self) && clock.elapsed() < PATIENCE {
-            clock.wait_until_or(clock.elapsed() + LOOK, || false);
+        while !is_so(self) && clock.elapsed() < TIMEOUT {
+            clock.wait_until_or(clock.elapsed() + CHECK_INTERVAL, || false);
         }
         match is_so(self) {
             true => Ok(()),

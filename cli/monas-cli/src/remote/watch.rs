@@ -12,7 +12,7 @@ use super::connection::{self, failure};
 use super::run_selector::RunSelector;
 
 /// The longest wait before the limits are checked.
-const LOOK: Duration = Duration::from_millis(20);
+const CHECK_INTERVAL: Duration = Duration::from_millis(20);
 
 /// When to stop watching.
 #[derive(Args, Debug)]
@@ -47,7 +47,8 @@ pub(crate) fn watch(
         if left == Some(Duration::ZERO) || limits.count == Some(count) {
             break;
         }
-        let seen = watching.wait(left.unwrap_or(LOOK).min(LOOK)).map_err(failure(format))?;
+        let seen =
+            watching.wait(left.unwrap_or(CHECK_INTERVAL).min(CHECK_INTERVAL)).map_err(failure(format))?;
         count += u64::from(seen.is_some());
         if !take(seen, console)? {
             break;

@@ -256,7 +256,7 @@ fn without_vision_nothing_publishes_the_ball_and_both_checks_say_so() {
     let expected = "warning[E0369]: `models/goalie.srm` reads `soccer/ball`, but no agent here publishes it";
     assert!(check.err.contains(expected), "{}", check.err);
     assert!(check.err.contains("let an agent run one of `Vision`"), "{}", check.err);
-    // Without exploring the states, of which this is no finding.
+    // Without exploring the states, of which this is not a finding.
     let names = |model: &str| monas(&["model", "check", model, "--all", "--states", "0"]);
     let check = names(&at(folder.path(), "models/goalie.srm"));
     let expected = "information[M17]: `soccer/ball` is read here, but no activity of this chart publishes it";
@@ -304,7 +304,7 @@ fn what_a_body_cannot_do_is_said_with_the_activities_that_rely_on_it() {
     let alone = monas(&["config", "check", &at(folder.path(), "goalie.xml")]);
     let blind = "body `nao`: the robot sees nothing: its cameras deliver images, with `vision=\"images\"`; this concerns `Vision` of Goalie";
     assert!(alone.err.contains(blind), "{}", alone.err);
-    // Cameras that are missing on this computer are no errors of the configuration.
+    // Cameras that are missing on this computer are not errors of the configuration.
     let seeing = monas(&["config", "check", &at(folder.path(), "seeing.xml")]);
     assert_eq!(seeing.code, Some(0), "{}", seeing.err);
     for missing in [

@@ -90,7 +90,7 @@ fn each_command_has_a_manual_page() {
     assert!(page("monas.1").contains(".TH monas 1"), "{}", page("monas.1"));
     assert!(page("monas-model-check.1").contains("\\-\\-properties"), "{}", page("monas-model-check.1"));
     let answer = monas(&["man", "Cargo.toml"]);
-    assert_eq!(answer.code, Some(1), "a file is no folder");
+    assert_eq!(answer.code, Some(1), "a file is not a folder");
     assert!(answer.err.starts_with("error: Cargo.toml: "), "{}", answer.err);
 }
 

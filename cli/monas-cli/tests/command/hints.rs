@@ -59,7 +59,7 @@ fn an_extension_without_a_format_is_refused_as_the_help_says() {
     let answer = monas(&["model", "convert", "models/goalie.srm", &out]);
     assert_eq!(answer.code, Some(2));
     assert!(answer.err.contains("--as") && answer.err.contains("xmi-2018"), "{}", answer.err);
-    assert!(monas(&["model", "convert", "--help"]).out.contains("Any other extension needs it"));
+    assert!(monas(&["model", "convert", "--help"]).out.contains("Any other extension requires this option"));
 }
 
 #[test]

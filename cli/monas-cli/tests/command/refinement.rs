@@ -118,5 +118,5 @@ fn refinements_of_a_chart_are_applied_to_a_role_and_to_a_newer_chart() {
     let answer = monas(&["model", "transform", &newer, "--to", "iac", "--keep", &chart]);
     assert_eq!((answer.code, answer.err.as_str()), (Some(0), ""));
     assert!(answer.out.contains("Track -> Kick : [Ball.distance < 0.25]"), "{}", answer.out);
-    assert_eq!(monas(&["model", "regenerate", &chart]).code, Some(2), "a chart is no role");
+    assert_eq!(monas(&["model", "regenerate", &chart]).code, Some(2), "a chart is not a role");
 }

@@ -1,4 +1,4 @@
-//! The studio of a run: what is printed, and that it is no part of the run.
+//! The studio of a run: what is printed, and that it is not part of the run.
 
 use serde_json::Value;
 

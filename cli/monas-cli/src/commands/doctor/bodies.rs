@@ -8,7 +8,8 @@ use crate::input::grammar;
 
 const AREA: &str = "bodies";
 
-/// Each kind of body with what answers, then each address that the configuration names.
+/// Each kind of body with the answer of its interface, then each address that the configuration
+/// names.
 pub(crate) fn findings(arguments: &DoctorArguments) -> Vec<CheckResult> {
     let kinds = BodyKind::linked();
     if kinds.is_empty() {

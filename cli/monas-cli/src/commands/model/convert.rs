@@ -20,8 +20,8 @@ pub(crate) struct ConvertArguments {
     pub(crate) output: PathBuf,
     /// The format: text, role, xmi, xmi-2010, xmi-flat, xmi-2012, xmi-2018, scxml or rust. If not
     /// given, it follows from the extension of OUT: .model, .stct, .xmi, .scxml, .rs, .txt; with
-    /// .iac, .eac, .sag, .suc, .aip, .srm or .ft it is XMI for textual input, and text for XMI.
-    /// Any other extension needs it.
+    /// .iac, .eac, .sag, .suc, .aip, .srm or .ft it is XMI for textual input, and text for XMI. Any
+    /// other extension requires this option.
     #[arg(long = "as", value_name = "FORMAT")]
     pub(crate) written: Option<String>,
     /// Write the file even if the format cannot represent all of the model.

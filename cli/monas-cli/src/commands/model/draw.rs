@@ -19,8 +19,8 @@ pub(crate) struct DrawArguments {
     /// Ignore the layout that the model gives for its states and transitions.
     #[arg(long)]
     pub(crate) no_layout: bool,
-    /// A diagram of the original editors (.kse, .iacd) for a model in XMI: its nodes are where that
-    /// has them.
+    /// A diagram of the original editors (.kse, .iacd) for a model in XMI: nodes are placed as in
+    /// the diagram.
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath, conflicts_with = "no_layout")]
     pub(crate) diagram: Option<PathBuf>,
     /// Leave out what is never taken (`[false]`), and boxes that only enclose another box.

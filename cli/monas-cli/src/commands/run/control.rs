@@ -13,7 +13,7 @@ pub(crate) use socket::{bind, serve, view};
 
 /// The largest number in names of sockets of one configuration.
 #[cfg(unix)]
-const NAMESAKES: u32 = 99;
+const LARGEST_NUMBER: u32 = 99;
 
 /// The name of a run: that of its socket, or the stem of the configuration's file, reduced to
 /// characters allowed in names of sockets.
@@ -40,7 +40,7 @@ mod socket {
     pub(crate) use monas_link::control::ControlSocket;
 
     use crate::commands::run::control::{
-        CommandFailure, CommandOutput, NAMESAKES, Pace, RunArguments, RunHandle, Studio, Tape, name_of,
+        CommandFailure, CommandOutput, LARGEST_NUMBER, Pace, RunArguments, RunHandle, Studio, Tape, name_of,
     };
     use crate::commands::studio;
     use monas_terminal::Format;
@@ -139,7 +139,7 @@ mod socket {
     /// Takes `match`, or `match-2` if that name is taken, and so on.
     fn first_free(folder: &Path, name: &str) -> Result<ControlSocket, Error> {
         let mut bound = ControlSocket::bind(folder, name);
-        for number in 2..=NAMESAKES {
+        for number in 2..=LARGEST_NUMBER {
             match &bound {
                 Err(error) if error.kind() == ErrorKind::NameTaken => {
                     bound = ControlSocket::bind(folder, &format!("{name}-{number}"));

@@ -25,8 +25,8 @@ pub(crate) struct LeagueArguments {
     /// Soccer League (version 19).
     #[arg(long, value_name = "LEAGUE", value_enum, default_value = "spl", requires = "referee")]
     pub(crate) rules: RuleBookArgument,
-    /// How long --referee hides the beginning of play and goals, since robots hear the whistle; 15s
-    /// in the league.
+    /// The delay with which --referee announces the beginning of play and goals, since robots
+    /// should hear the whistle; 15s in the league.
     #[arg(long, value_name = "DURATION", value_parser = duration::parse, default_value = "0s")]
     #[arg(requires = "referee")]
     pub(crate) whistle_delay: Duration,

@@ -18,8 +18,8 @@ use super::outputs::RecordingAlarm;
 use super::pacer::{Pacer, factor};
 use super::{RunArguments, control, outputs, real_time};
 
-/// Simulated time between two looks at the interrupt and the pace.
-const LOOK: Duration = Duration::from_millis(20);
+/// Simulated time between two checks of the interrupt and the pace.
+const CHECK_INTERVAL: Duration = Duration::from_millis(20);
 /// How long an activity may take to return after an interrupt.
 const STOP_LIMIT: Duration = Duration::from_secs(3);
 
@@ -58,8 +58,8 @@ pub(super) fn execute(
     let now = |simulation: &Simulation| simulation.now().since(Timestamp::ZERO);
     let mut is_due = true;
     while now(&simulation) < length && !interrupt.is_requested() {
-        // While time is held, the run still takes requests.
-        let step = if is_due { LOOK } else { Duration::ZERO };
+        // While simulated time is held, the run still handles requests.
+        let step = if is_due { CHECK_INTERVAL } else { Duration::ZERO };
         let next = Timestamp::ZERO + now(&simulation).saturating_add(step).min(length);
         let advanced = simulation.run_until_cancelled(next, || interrupt.is_requested(), STOP_LIMIT);
         simulation = match advanced {

@@ -113,8 +113,8 @@ impl RecordingAlarm {
         RecordingAlarm { tape, run, failure: None }
     }
 
-    /// Compares the recording with the last look. Between two steps of simulated time no agent
-    /// runs, and lines of the log are no part of the run's hash.
+    /// Compares the state of the recording with the previous check. Between two steps of simulated
+    /// time no agent runs, and lines of the log are not part of the run's hash.
     pub(super) fn check(&mut self, now: Timestamp) {
         let Some(tape) = &self.tape else { return };
         let failure = tape.failure();

@@ -7,8 +7,8 @@ use monas_terminal::{Interrupt, WallClock};
 
 use super::RunArguments;
 
-/// The longest wait before a run looks after requests.
-const PATIENCE: Duration = Duration::from_millis(50);
+/// The longest wait before a run handles requests.
+const MAX_WAIT: Duration = Duration::from_millis(50);
 
 /// Keeps simulated time from running ahead of a pace, which may change meanwhile.
 pub(super) struct Pacer {
@@ -27,9 +27,9 @@ impl Pacer {
     }
 
     /// Waits until a simulated time may be passed, or until an interrupt, but no longer than
-    /// [`PATIENCE`]. Returns whether the wait is over: a run that is held still takes requests.
+    /// [`MAX_WAIT`]. Returns whether the wait is over: a held run still handles requests.
     pub(super) fn wait(&mut self, simulated: Duration, interrupt: &Interrupt) -> bool {
-        let patience = self.clock.elapsed().saturating_add(PATIENCE);
+        let patience = self.clock.elapsed().saturating_add(MAX_WAIT);
         loop {
             let factor = self.pace.factor();
             if factor != self.factor {

@@ -17,9 +17,9 @@ use super::real_time;
 use super::{RunArguments, control, outputs, scoreboard, summary};
 
 /// Simulated time between two updates of the scoreboard.
-const LOOK: Duration = Duration::from_millis(100);
+const UPDATE_INTERVAL: Duration = Duration::from_millis(100);
 /// The same with a pace, so that watchers see continuous progress.
-const PACED_LOOK: Duration = Duration::from_millis(10);
+const PACED_UPDATE_INTERVAL: Duration = Duration::from_millis(10);
 
 pub(crate) fn execute(
     arguments: &RunArguments,
@@ -123,7 +123,7 @@ fn play(
     let mut scoreboard = scoreboard::for_console(console, length, arguments.field);
     scoreboard.show(&running)?;
     while running.now() < length && !running.is_over() && !interrupt.is_requested() {
-        let look = if pace.factor().is_finite() { PACED_LOOK } else { LOOK };
+        let look = if pace.factor().is_finite() { PACED_UPDATE_INTERVAL } else { UPDATE_INTERVAL };
         let next = (running.now() + look).min(length);
         running = running.advance_until_cancelled(next, || interrupt.is_requested()).map_err(failed)?;
         alarm.check(handle.now());

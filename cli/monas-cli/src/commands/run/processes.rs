@@ -17,9 +17,9 @@ use super::RunArguments;
 
 /// The variable that names the process of the match to that of a robot.
 const PARENT: &str = "MONAS_MATCH_PROCESS";
-/// How long after its start a process is started again, if it ends by itself.
+/// Minimum time between two starts of a process that ends by itself.
 const RESTART: Duration = Duration::from_secs(1);
-/// How long a process has to end: its robot sits down first.
+/// Time limit for the end of a process, whose robot sits down first.
 const END_LIMIT: Duration = Duration::from_secs(8);
 
 /// The processes of the robots that have one of their own.
@@ -147,7 +147,7 @@ impl RobotProcess {
             }
             tracing::warn!(robot = %host, "its process has ended, {status}, and is started again");
         }
-        // Should the start fail, the next is tried after the same time.
+        // If the start fails, the next attempt follows after the same time.
         self.process = None;
         self.start()
     }

@@ -15,7 +15,7 @@ pub(crate) trait Scoreboard {
     fn show(&mut self, running: &RunningMatch) -> io::Result<()>;
 }
 
-/// The scoreboard for a terminal, or for a file; the field, if it is asked for.
+/// The scoreboard for a terminal or a file; the field, if it was requested.
 pub(crate) fn for_console<'c>(
     console: &'c mut CommandOutput<'_>,
     length: Duration,

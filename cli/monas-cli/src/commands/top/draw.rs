@@ -11,10 +11,10 @@ use super::metrics::{ActivityFigures, ActivityRemark, AgentFigures, Metrics};
 use super::sample;
 use super::sample::{ACTIVITY_HEADER, AGENT_HEADER};
 
-const QUIET: Style = Style::new().fg(Color::DarkGray);
+const DIMMED: Style = Style::new().fg(Color::DarkGray);
 const HEADER: Style = Style::new().add_modifier(Modifier::BOLD);
 const GOOD: Style = Style::new().fg(Color::Green);
-const WORTH_A_LOOK: Style = Style::new().fg(Color::Yellow);
+const REMARKABLE: Style = Style::new().fg(Color::Yellow);
 const WRONG: Style = Style::new().fg(Color::Red).add_modifier(Modifier::BOLD);
 
 /// The metrics shown, and the selected agent.
@@ -74,7 +74,7 @@ impl Screen {
         self.draw_topics(frame, topics);
         let last = match self.figures.alarms.first() {
             Some(alarm) => Line::styled(format!("alarm: {alarm}"), WRONG),
-            None => Line::styled("up, down: choose an agent   q: quit", QUIET),
+            None => Line::styled("up, down: choose an agent   q: quit", DIMMED),
         };
         frame.render_widget(last, keys);
     }
@@ -158,9 +158,9 @@ fn style_of(agent: &AgentFigures) -> Style {
     let is_remarked = agent.activities.iter().any(|one| one.remark.is_some());
     match agent.entry.state.as_str() {
         "stuck" | "stopped" => WRONG,
-        _ if agent.overruns > 0 || is_remarked => WORTH_A_LOOK,
+        _ if agent.overruns > 0 || is_remarked => REMARKABLE,
         "runs" => GOOD,
-        _ => QUIET,
+        _ => DIMMED,
     }
 }
 
@@ -169,7 +169,7 @@ fn style_of_activity(activity: &ActivityFigures) -> Style {
         Some(ActivityRemark::Stuck | ActivityRemark::Fails) => WRONG,
         Some(
             ActivityRemark::Burns | ActivityRemark::Blocks | ActivityRemark::Leaks | ActivityRemark::Loops,
-        ) => WORTH_A_LOOK,
+        ) => REMARKABLE,
         None => Style::new(),
     }
 }

@@ -45,7 +45,7 @@ pub(crate) struct ActivityFigures {
     pub(crate) hz: f64,
     /// Load, in cores; none if not measured.
     pub(crate) load: Option<f64>,
-    /// The part of it of a call that has not returned since the last sample.
+    /// The part of the load of a call that has not returned since the last sample.
     pub(crate) open_load: f64,
     pub(crate) remark: Option<ActivityRemark>,
 }
