@@ -1,4 +1,4 @@
-//! Which requests are answered.
+//! Access control of requests.
 
 use std::net::{IpAddr, SocketAddr};
 
@@ -7,18 +7,19 @@ use crate::error::{Error, ErrorKind};
 /// The name of the cookie with the token.
 const COOKIE: &str = "monas_studio";
 
-/// The rules for requests: they are for this server by name, come from its own page, and know the
-/// token if others than this computer can connect.
+/// The rules for requests: they name this server, come from its own page, and carry the token if
+/// other computers can connect.
 ///
-/// A page of another origin cannot read what the studio sends: a browser names the origin of a page
-/// that opens a WebSocket, and the name that a page was loaded from (DNS rebinding).
+/// A page of another origin cannot read from the studio: a browser sends the origin of a page that
+/// opens a WebSocket (`Origin`), and the name from which the page was loaded (`Host`), which
+/// reveals DNS rebinding.
 #[derive(Clone, Debug)]
 pub(crate) struct AccessPolicy {
     address: SocketAddr,
     token: Option<String>,
 }
 
-/// The fields of a request that decide.
+/// The fields of a request on which access depends.
 #[derive(Clone, Copy, Default, Debug)]
 pub(crate) struct RequestOrigin<'a> {
     pub(crate) host: Option<&'a str>,
@@ -60,7 +61,7 @@ impl AccessPolicy {
         Some(format!("Set-Cookie: {COOKIE}={token}; HttpOnly; SameSite=Strict; Path=/\r\n"))
     }
 
-    /// Whether a request is answered.
+    /// Checks whether a request may be answered.
     pub(crate) fn check(&self, request: &RequestOrigin<'_>) -> Result<(), Refusal> {
         let host = request.host.ok_or(Refusal("the request names no host"))?;
         if !self.is_own(host) {

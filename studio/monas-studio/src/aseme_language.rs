@@ -21,11 +21,11 @@ use crate::time::now;
 /// The functionality and the technology of an activity, if the program has it.
 type Functionality = dyn Fn(&str) -> Option<(String, String)> + Send + Sync;
 
-/// The longest check, and its most states: a page waits for it.
+/// Limits of a check in time and states, since a page waits for it.
 const CHECK_LIMIT: Duration = Duration::from_secs(20);
 const CHECK_STATES: usize = 20_000;
 
-/// The most entries of a completion.
+/// The largest number of completion entries.
 const ENTRIES: usize = 1000;
 
 /// The language of models with the messages, functions and activities of a program.

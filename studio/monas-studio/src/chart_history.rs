@@ -15,7 +15,7 @@ pub(crate) struct RecordedStep {
     /// The index of its record among the messages of the tape.
     pub(crate) index: usize,
     pub(crate) step: Chart,
-    /// Whether it stands for the steps before the beginning of the tape: it enters the states that
+    /// Whether it summarises the steps before the beginning of the tape: it enters the states that
     /// were active there, as far as later steps show.
     pub(crate) is_before: bool,
 }

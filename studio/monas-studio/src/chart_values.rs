@@ -7,14 +7,14 @@ use serde_json::{Value, json};
 use crate::chart_view::{ChartKey, seconds};
 use crate::message_decoder::MessageDecoder;
 
-/// The values of a chart, shared by the viewers that see them.
+/// The values of a chart, shared by its viewers.
 #[derive(Debug)]
 pub(crate) struct ChartValues {
     pub(crate) key: ChartKey,
     latest: Mutex<LatestValues>,
 }
 
-/// The values that the run has sent last.
+/// The values that the run sent last.
 #[derive(Clone, Default, Debug)]
 pub(crate) struct LatestValues {
     /// Counts changes.
@@ -31,7 +31,7 @@ impl ChartValues {
         self.latest.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Takes values, if they are others.
+    /// Stores values if they have changed.
     pub(crate) fn set(&self, values: Value) {
         let mut latest = self.lock();
         if *latest.values != values {
@@ -41,7 +41,7 @@ impl ChartValues {
     }
 }
 
-/// The charts whose values viewers see.
+/// The charts whose values are being viewed.
 #[derive(Default, Debug)]
 pub(crate) struct WatchedCharts(Mutex<Vec<Weak<ChartValues>>>);
 
@@ -58,7 +58,7 @@ impl WatchedCharts {
         })
     }
 
-    /// The charts that are watched now.
+    /// The charts that are being watched.
     pub(crate) fn all(&self) -> Vec<Arc<ChartValues>> {
         let charts = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         charts.iter().filter_map(Weak::upgrade).collect()
@@ -100,7 +100,7 @@ pub(crate) fn shown(key: &ChartKey, values: &Value, decoder: &MessageDecoder) ->
         "scopes": scopes})
 }
 
-/// The bytes of hexadecimal digits; a part that is none ends them.
+/// The bytes of a hexadecimal text, up to the first invalid digit.
 fn bytes(digits: &str) -> Vec<u8> {
     let pairs = (0..digits.len() / 2).map_while(|place| digits.get(2 * place..2 * place + 2));
     pairs.map_while(|pair| u8::from_str_radix(pair, 16).ok()).collect()

@@ -1,4 +1,4 @@
-//! A statechart as viewers see it: its shapes, its active states, its latest steps.
+//! The view of a statechart: its shapes, active states and latest steps.
 
 use std::collections::{BTreeSet, VecDeque};
 use std::sync::Arc;
@@ -6,7 +6,7 @@ use std::sync::Arc;
 use monas::records::{self, ChartState};
 use serde_json::{Value, json};
 
-/// How many steps are kept for viewers that connect later.
+/// The number of steps kept for viewers that connect later.
 const STEPS: usize = 64;
 
 /// The chart of an agent.
@@ -47,19 +47,19 @@ pub(crate) struct ChartView {
 }
 
 impl ChartView {
-    /// Whether the run has to be asked for its state.
+    /// Whether its state has to be requested from the run.
     pub(crate) fn is_stale(&self) -> bool {
         self.is_stale || self.picture.is_null()
     }
 
-    /// Takes the reply of a run.
+    /// Applies the reply of a run.
     pub(crate) fn load(&mut self, state: &ChartState) {
         self.model.clone_from(&state.model);
         self.state.clone_from(&state.state);
         self.show(&state.picture);
     }
 
-    /// Takes the shapes, and the states that are active in them.
+    /// Sets the shapes, and the active states in them.
     pub(crate) fn show(&mut self, picture: &str) {
         let mut picture: Value = serde_json::from_str(picture).unwrap_or_default();
         let active = picture.as_object_mut().and_then(|picture| picture.remove("active"));
@@ -91,7 +91,7 @@ impl ChartView {
         self.revision += 1;
     }
 
-    /// Notes that records were lost, or that the chart may be another one.
+    /// Marks the view as stale: records were lost, or the chart may have been replaced.
     pub(crate) fn mark_stale(&mut self) {
         self.is_stale = true;
     }
@@ -132,7 +132,7 @@ impl ChartView {
         })
     }
 
-    /// The shapes, for a viewer that asks.
+    /// The shapes, for a viewer that requests them.
     pub(crate) fn picture(&self) -> &Value {
         &self.picture
     }

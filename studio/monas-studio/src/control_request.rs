@@ -7,8 +7,8 @@ use serde_json::{Map, Value};
 /// The longest list of settings of a change.
 const SETTINGS: usize = 256;
 
-/// A request that changes a run, or asks for what such a request needs. A page numbers its requests
-/// to recognise the replies.
+/// A request that changes a run, or queries data for such a request. A page numbers its requests to
+/// match the replies.
 #[derive(Clone, PartialEq, Debug)]
 pub(crate) enum ControlRequest {
     /// Changes the agents of a host.
@@ -73,12 +73,12 @@ enum AgentAction {
 }
 
 impl ControlRequest {
-    /// Whether requests of a type are such ones.
+    /// Whether requests of this type are control requests.
     pub(crate) fn is_type(name: &str) -> bool {
         matches!(name, "change" | "publish" | "form")
     }
 
-    /// Reads a request of such a type: its number, and the request.
+    /// Parses a control request: its number, and the request.
     ///
     /// # Errors
     /// A message for people.
@@ -95,7 +95,7 @@ impl ControlRequest {
     fn of(mut fields: Map<String, Value>) -> Result<ControlRequest, String> {
         let mut word = |name: &str| match fields.remove(name) {
             Some(Value::String(text)) => Ok(text),
-            Some(_) => Err(format!("`{name}` is no text")),
+            Some(_) => Err(format!("`{name}` is not a text")),
             None => Err(format!("`{name}` is missing")),
         };
         match word("type")?.as_str() {
@@ -116,7 +116,7 @@ impl ControlRequest {
                 nothing_else(&fields)?;
                 Ok(ControlRequest::Form { topic })
             }
-            other => Err(format!("`{other}` is no request")),
+            other => Err(format!("`{other}` is not a request")),
         }
     }
 }
@@ -180,7 +180,7 @@ fn settings(given: Option<Map<String, Value>>) -> Result<Vec<Setting>, String> {
     }
     let setting = |(key, value): (String, Value)| match value {
         Value::String(value) => Ok(Setting { key, value }),
-        _ => Err(format!("the value of `{key}` is no text")),
+        _ => Err(format!("the value of `{key}` is not a text")),
     };
     given.into_iter().map(setting).collect()
 }
@@ -240,7 +240,7 @@ mod tests {
         };
         assert!(change(json!({"action": "explode"})).contains("explode"));
         assert!(change(json!({"action": "pause", "chart": "1"})).contains("chart"));
-        assert!(change(json!({"action": "set", "settings": {"a": 1}})).contains("`a` is no text"));
+        assert!(change(json!({"action": "set", "settings": {"a": 1}})).contains("`a` is not a text"));
         assert!(change(json!({"action": "step", "number": 7})).contains("number"));
         assert!(change(json!({"action": "move_activity", "activity": "x", "place": -1})).contains("-1"));
         assert!(change(json!({})).contains("action"));
@@ -249,7 +249,7 @@ mod tests {
         let publish = json!({"type": "publish", "id": 1, "host": "a", "topic": "b"});
         assert!(read(publish).unwrap_err().contains("`message`"));
         assert!(read(json!({"type": "form", "topic": "a"})).unwrap_err().contains("`id`"));
-        assert!(read(json!({"type": "form", "id": 1, "topic": 2})).unwrap_err().contains("no text"));
+        assert!(read(json!({"type": "form", "id": 1, "topic": 2})).unwrap_err().contains("not a text"));
         assert!(read(json!({"type": "form", "id": 1, "topic": "a", "x": 2})).unwrap_err().contains("`x`"));
         assert!(read(json!([])).is_err());
     }

@@ -1,4 +1,4 @@
-//! The WebSocket protocol of Foxglove: topics of a run for viewers of others.
+//! The WebSocket protocol of Foxglove: topics of a run for third-party viewers.
 //!
 //! The server describes itself and its channels as JSON; a client subscribes to channels, and gets
 //! their messages as frames of bytes. Each topic of each host is a channel, with its protobuf
@@ -24,19 +24,19 @@ use crate::live_state::LiveState;
 use crate::time::now;
 use crate::viewer::next_request;
 
-/// The names of the protocol, the one that is preferred first.
+/// The names of the subprotocol, in order of preference.
 pub(crate) const PROTOCOLS: [&str; 2] = ["foxglove.sdk.v1", "foxglove.websocket.v1"];
 
 /// The longest wait for a request of the client, and for a message of the run.
-const PATIENCE: Duration = Duration::from_millis(5);
+const MAX_WAIT: Duration = Duration::from_millis(5);
 
-/// The interval between two looks for new topics.
+/// The interval between checks for new topics.
 const TOPICS: Duration = Duration::from_secs(1);
 
-/// The interval between two looks at the scene and the states of charts.
+/// The interval between updates of the scene and the states of charts.
 const VIEWS: Duration = Duration::from_nanos(1_000_000_000 / 30);
 
-/// The longest that a client may take to receive a frame; a slower one is disconnected.
+/// The time limit for a client to receive a frame; slower clients are disconnected.
 const SLOWEST: Duration = Duration::from_secs(5);
 
 /// The most messages that are sent between two requests.
@@ -46,9 +46,9 @@ const BATCH: usize = 512;
 const REQUEST_LIMIT: usize = 64 << 10;
 const SUBSCRIPTIONS: usize = 1000;
 
-/// Serves a client until it leaves, is too slow, or the run or the studio ends.
+/// Serves a client until it disconnects, is too slow, or the run or the studio ends.
 pub(crate) fn serve(stream: TcpStream, state: &LiveState, is_over: &AtomicBool) {
-    // A client that has left needs no report, and the end of the run closes the connection.
+    // A disconnected client needs no report, and the end of the run closes the connection.
     let _ = exchange(stream, state, is_over);
 }
 
@@ -79,7 +79,7 @@ fn exchange(
             }
             due = now() + TOPICS;
         }
-        if let Some(request) = next_request(&mut socket, PATIENCE)? {
+        if let Some(request) = next_request(&mut socket, MAX_WAIT)? {
             match channels.handle(&request) {
                 Ok(false) => {}
                 Ok(true) => watch = channels.watch(&state.socket)?,
@@ -96,7 +96,7 @@ fn exchange(
             views_due = now() + VIEWS;
         }
         let Some(watch) = &mut watch else { continue };
-        let mut patience = PATIENCE;
+        let mut patience = MAX_WAIT;
         for _ in 0..BATCH {
             let Some(seen) = watch.wait(patience)? else { break };
             for frame in channels.frames(&seen, cameras::of(state.scene.as_deref())) {
@@ -117,7 +117,7 @@ struct Channels {
     cameras: CameraChannels,
     /// The largest number of a channel.
     last: u64,
-    /// By the client's number: the channel.
+    /// The channel of each subscription, by the client's number.
     subscriptions: BTreeMap<u32, u64>,
 }
 
@@ -155,7 +155,7 @@ impl Channels {
         Ok(news)
     }
 
-    /// The frames of channels that are no topics.
+    /// The frames of the channels that do not represent topics.
     fn view_frames(&mut self, state: &LiveState) -> Vec<Vec<u8>> {
         let Channels { views, subscriptions, .. } = self;
         let subscribers = |channel: u64| {
@@ -165,7 +165,7 @@ impl Channels {
         views.frames(state, subscribers)
     }
 
-    /// Handles a request. Returns whether the subscriptions are others.
+    /// Handles a request. Returns whether the subscriptions have changed.
     ///
     /// # Errors
     /// A message for people.

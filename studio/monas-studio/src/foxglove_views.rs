@@ -1,4 +1,4 @@
-//! Channels of Foxglove's protocol that are no topics of a run: its scene, and the states of its
+//! Channels of Foxglove's protocol that do not represent topics: the scene, and the states of
 //! charts.
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -14,7 +14,7 @@ use crate::scene_update::SceneHistory;
 use crate::scene_update::messages::SceneUpdate;
 use crate::state_name::StateNames;
 
-/// Messages of the studio's own for viewers of others.
+/// Messages that the studio defines for third-party viewers.
 #[allow(missing_docs, unreachable_pub)]
 mod messages {
     narukom::include_messages!("monas.studio");
@@ -22,7 +22,7 @@ mod messages {
 
 use messages::ActiveState;
 
-/// The channels of a client, and what it has got of them.
+/// The channels of a client, and what has been sent on them.
 #[derive(Default)]
 pub(crate) struct FoxgloveViews {
     scene: Option<SceneChannel>,
@@ -39,7 +39,7 @@ struct SceneChannel {
 struct ChartChannel {
     id: u64,
     names: StateNames,
-    /// The drawing that the names are of.
+    /// The drawing from which the names were taken.
     drawing: u64,
     active: BTreeSet<u32>,
     steps: u64,
@@ -91,7 +91,7 @@ impl FoxgloveViews {
             let (ids, revision) = (subscribers(channel.id), view.scene_revision());
             let is_known = channel.sent.as_ref().is_some_and(|(sent, to)| (*sent, to) == (revision, &ids));
             if !ids.is_empty() && !is_known {
-                // A new subscriber needs all of it.
+                // A new subscriber receives the whole scene.
                 if channel.sent.as_ref().is_none_or(|(_, to)| *to != ids) {
                     channel.history = SceneHistory::default();
                 }
@@ -130,7 +130,7 @@ impl FoxgloveViews {
 }
 
 impl ChartChannel {
-    /// The frames with the present state, if it is another than before.
+    /// The frames with the present state, if it has changed.
     fn news(&mut self, time: u64, ids: &[u32]) -> Vec<Vec<u8>> {
         let (state, active) = self.names.active(&self.active);
         let message = ActiveState { state, active };

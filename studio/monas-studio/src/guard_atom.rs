@@ -17,12 +17,12 @@ use crate::chart_history::ChartHistory;
 use crate::read_value::{ReadMoment, ReadValue};
 use crate::tape_run::TapeRun;
 
-/// A part of a guard that is no conjunction, disjunction or negation of these.
+/// A part of a guard that is not a conjunction, disjunction or negation of these.
 #[derive(Clone, PartialEq, Debug, Serialize)]
 pub struct GuardAtom {
-    /// Its text.
+    /// The text of the part.
     pub text: String,
-    /// Whether it held; none if it is unknown, since a message had not arrived.
+    /// Whether it held; none if that is unknown because a message had not arrived.
     pub value: Option<bool>,
     /// The values that it read.
     pub reads: Vec<ReadValue>,

@@ -12,8 +12,8 @@ const HEAD_LIMIT: usize = 16 << 10;
 /// The most headers of a request.
 const HEADERS: usize = 64;
 
-/// The longest wait for a part of the head, and the most parts.
-const PATIENCE: Duration = Duration::from_secs(2);
+/// The time limit for a part of the head, and the largest number of parts.
+const TIMEOUT: Duration = Duration::from_secs(2);
 const PARTS: usize = 64;
 
 /// A request without its body: only GET is answered.
@@ -30,7 +30,7 @@ impl HttpRequest {
     /// Reads the head of a request; `None` if the peer closes, is too slow, or sends something
     /// else.
     pub(crate) fn read(stream: &mut TcpStream) -> io::Result<Option<HttpRequest>> {
-        stream.set_read_timeout(Some(PATIENCE))?;
+        stream.set_read_timeout(Some(TIMEOUT))?;
         let mut head = Vec::new();
         let mut buffer = [0; 2048];
         for _ in 0..PARTS {
@@ -81,7 +81,7 @@ impl HttpRequest {
     /// The headers that decide whether it is answered.
     pub(crate) fn origin(&self) -> RequestOrigin<'_> {
         let parameters = self.query.split('&').filter_map(|parameter| parameter.split_once('='));
-        // A second `Host` would leave open which one decides.
+        // With a second `Host` it would be ambiguous which one counts.
         let hosts = self.headers.iter().filter(|(name, _)| name == "host").count();
         RequestOrigin {
             host: self.header("host").filter(|_| hosts == 1),

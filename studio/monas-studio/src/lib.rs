@@ -9,14 +9,14 @@
 //!
 //! # Design rationale
 //!
-//! - **Threads, no runtime.** A thread accepts connections, one follows the run, and each viewer
-//!   has one: at most 32 connections and eight viewers. HTTP is a page of three files, so a request
-//!   line and its headers are all that is parsed.
+//! - **Threads, no runtime.** One thread accepts connections, one follows the run, and each viewer
+//!   has a thread: at most 32 connections and eight viewers. HTTP is a page of three files, so a
+//!   request line and its headers are all that is parsed.
 //! - **Newest wins.** A viewer gets at most 30 frames per second, each with all that has changed
 //!   since its last one. A slow page gets fewer frames, and after five seconds none.
 //! - **Only its own page is answered.** The `Host` must name this server, an `Origin` must be its
-//!   own, and any other address than loopback needs a random token. Viewers that speak Foxglove's
-//!   protocol get the topics of a run under the same rules; origins of such can be allowed.
+//!   own, and any other address than loopback needs a random token. Viewers that use Foxglove's
+//!   protocol get the topics of a run under the same rules; their origins can be allowed.
 //! - **The server refuses, not the page.** Requests that change a run are a type of their own, read
 //!   strictly, and refused in one place.
 //! - **Edits are edits of text.** Models can be edited that the program lists in a

@@ -25,16 +25,16 @@ use crate::scene::{Scene, SceneEvent};
 use crate::source::{Session, Source};
 use crate::time::now;
 
-/// The longest wait for a message before the rest is looked after.
-const LOOK: Duration = Duration::from_millis(20);
+/// The longest wait for a message before other work is done.
+const CHECK_INTERVAL: Duration = Duration::from_millis(20);
 
 /// The most messages that are taken at once.
 const BATCH: usize = 2048;
 
-/// The interval between two looks at agents and topics.
+/// The interval between updates of agents and topics.
 const TABLES: Duration = Duration::from_secs(1);
 
-/// The interval between two looks at the values of charts that viewers see.
+/// The interval between updates of the chart values that are being viewed.
 const VALUES: Duration = Duration::from_millis(33);
 
 /// The interval between two attempts to connect.
@@ -188,7 +188,7 @@ impl LiveState {
         all_lost
     }
 
-    /// Asks for the values of the charts that viewers see.
+    /// Requests the values of the charts that are being viewed.
     fn look_at_values(&self, requests: &mut RunRequests) -> Result<(), monas_link::Error> {
         for chart in self.watched_charts.all() {
             // An agent that has just ended has no values.
@@ -202,7 +202,7 @@ impl LiveState {
         Ok(())
     }
 
-    /// Asks for the tables, and for charts that are not known.
+    /// Requests the tables, and the charts that are not known.
     fn look_after(&self, requests: &mut RunRequests, events: &mut EventLog) -> Result<(), monas_link::Error> {
         let run = requests.client.describe()?;
         let agents = requests.agents()?;
@@ -234,7 +234,7 @@ impl LiveState {
             }
         }
         for key in missing {
-            // An agent that has just ended has no chart; the next look finds what is there.
+            // An agent that has just ended has no chart; the next update has the present ones.
             if let Ok(state) = requests.chart(&key, false) {
                 self.view().load_chart(key, &state);
             }
@@ -257,7 +257,7 @@ struct EventLog {
 }
 
 impl EventLog {
-    /// The event that a message is, unless it only lasts.
+    /// The event that a message represents, unless it continues the previous event.
     fn event(&mut self, scene: &dyn Scene, message: &ViewedMessage<'_>) -> Option<SceneEvent> {
         if !scene.event_topics().contains(&message.topic) {
             return None;
@@ -285,7 +285,7 @@ impl EventLog {
 /// The next messages, at most one batch.
 fn next_batch(watch: &mut WatchStream) -> Result<Vec<Seen>, monas_link::Error> {
     let mut batch = Vec::new();
-    let mut patience = LOOK;
+    let mut patience = CHECK_INTERVAL;
     while let Some(seen) = watch.wait(patience)? {
         batch.push(seen);
         if batch.len() == BATCH {

@@ -1,4 +1,4 @@
-//! A viewer of a run on this computer: its present moment, or one before.
+//! A viewer of a run on this computer, at the present moment or an earlier one.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -18,7 +18,7 @@ use crate::run_view::{RunView, ViewCursor};
 use crate::source::Session;
 use crate::viewer_request::ViewerRequest;
 
-/// The fastest playing of a past moment.
+/// The fastest playback of the past.
 const FASTEST: f64 = 1000.0;
 
 /// A second in nanoseconds: the timeline grows in seconds.
@@ -31,22 +31,22 @@ const SKIPPED: usize = 4096;
 pub(crate) struct LiveSession {
     state: Arc<LiveState>,
     cursor: ViewCursor,
-    /// The pace that the viewer knows.
+    /// The pace that was last sent to the viewer.
     pace: Option<f64>,
     watched: Option<WatchedTopic>,
-    /// The robot whose images are seen, and their topic.
+    /// The robot whose images are viewed, and their topic.
     camera: Option<(ChosenCamera, WatchedTopic)>,
-    /// The chart whose values are seen, and the revision that the viewer has.
+    /// The chart whose values are viewed, and the revision that the viewer has.
     values: Option<(Arc<ChartValues>, u64)>,
-    /// The moment that is looked at, if it is not the present one.
+    /// The moment that is viewed, if it is not the present one.
     past: Option<PastMoment>,
-    /// Whether the viewer has to forget what it has, since the moment is not a later one.
+    /// Whether the viewer has to discard its state, because the moment has moved backwards.
     is_elsewhere: bool,
     /// The part of the ring that the viewer has: its events, its end in seconds.
     ring: Option<(u64, u64)>,
 }
 
-/// A moment of a run that goes on meanwhile.
+/// A past moment of a run in progress.
 struct PastMoment {
     view: RunView,
     /// The number of the messages that it has.
@@ -211,7 +211,7 @@ impl LiveSession {
         reply
     }
 
-    /// The facts of the timeline, if the viewer does not know them.
+    /// The data of the timeline, if the viewer does not have them.
     fn facts(&mut self, is_new: bool) -> Option<Value> {
         let now = self.state.view().now;
         let ring = self.state.ring();
@@ -238,7 +238,7 @@ impl LiveSession {
         })
     }
 
-    /// Goes to a moment of the run, or to the present one.
+    /// Seeks a moment of the run, or the present one.
     fn go_to(&mut self, number: u64, time: u64) {
         let (now, ring) = (self.state.view().now, self.state.ring());
         let time = time.max(ring.begin_time());
@@ -258,7 +258,7 @@ impl LiveSession {
         self.ring = None;
     }
 
-    /// Goes to another step of a chart.
+    /// Seeks another step of a chart.
     fn step(&mut self, key: &str, is_back: bool, is_wanted: impl Fn(&Chart) -> bool) -> Option<Value> {
         let ring = self.state.ring();
         let number = self.past.as_ref().map_or(ring.end(), |past| past.number);

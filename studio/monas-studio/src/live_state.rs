@@ -9,7 +9,7 @@ use crate::run_ring::RunRing;
 use crate::run_view::RunView;
 use crate::scene::Scene;
 
-/// A run as it is known to all of its viewers.
+/// The state of a run, shared by its viewers.
 pub(crate) struct LiveState {
     pub(crate) socket: PathBuf,
     pub(crate) scene: Option<Arc<dyn Scene>>,

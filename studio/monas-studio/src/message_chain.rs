@@ -1,4 +1,4 @@
-//! The messages behind a message, back to the readings of sensors.
+//! The causal chain of a message, back to the readings of sensors.
 
 use std::collections::{BTreeMap, BTreeSet, BinaryHeap};
 
@@ -128,7 +128,7 @@ impl<'a> ChainFinder<'a> {
             other.topic == CYCLE && other.host == channel.host && other.publisher == channel.publisher
         };
         if !self.tape.channels().iter().any(is_cycle) {
-            return ends(format!("`{}` is no agent: the message comes from outside", channel.publisher));
+            return ends(format!("`{}` is not an agent: the message comes from outside", channel.publisher));
         }
         let own: Vec<u64> = self
             .tape
@@ -183,7 +183,7 @@ impl<'a> ChainFinder<'a> {
         found.map(|(_, publisher)| publisher)
     }
 
-    /// The newest message of each wanted topic that the agent of a message had before it, the
+    /// For each requested topic, the newest message that the agent of a message had before it;
     /// newest first.
     fn delivered(
         &mut self,
@@ -228,7 +228,7 @@ impl<'a> ChainFinder<'a> {
         newest
     }
 
-    /// The radio message of another robot with the words of one that was heard.
+    /// The radio message of another robot with the content of a received one.
     fn said(&self, heard: usize) -> Option<usize> {
         let tape = self.tape;
         let (entry, channel) = tape.entry(heard)?;

@@ -16,7 +16,7 @@ impl MessageDecoder {
         self.by_topic.contains_key(topic)
     }
 
-    /// Takes the type of a topic: its full name, and a serialised `FileDescriptorSet`.
+    /// Adds the type of a topic: its full name, and a serialised `FileDescriptorSet`.
     pub(crate) fn learn(&mut self, topic: &str, name: &str, descriptors: &[u8]) {
         let found = monas_tape::descriptor_pool(descriptors).and_then(|pool| {
             pool.get_message_by_name(name).ok_or_else(|| format!("the schema does not contain `{name}`"))
@@ -35,7 +35,7 @@ impl MessageDecoder {
             .unwrap_or_else(|| Err(format!("the type of `{topic}` is not known")))
     }
 
-    /// A message as JSON; for one that cannot be read a text that says why.
+    /// A message as JSON; for a message that cannot be decoded, a text with the reason.
     pub(crate) fn decode(&self, topic: &str, bytes: &[u8]) -> Value {
         let unread = |reason: &str| Value::String(format!("({} bytes: {reason})", bytes.len()));
         match self.by_topic.get(topic) {

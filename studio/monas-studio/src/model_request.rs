@@ -14,13 +14,13 @@ pub(crate) enum ModelRequest {
     /// The structure of a text.
     #[serde(rename = "model outline")]
     Outline { file: usize, text: String },
-    /// All findings about a text.
+    /// Requests all findings about a text.
     #[serde(rename = "model check")]
     Check { file: usize, text: String },
     /// Completions at a position.
     #[serde(rename = "model complete")]
     Complete { text: String, expression: Option<String>, at: usize },
-    /// The replacements that make an edit.
+    /// Requests the replacements for an edit.
     #[serde(rename = "model edit")]
     Edit { text: String, edit: Value },
     /// Replaces a file whose revision is known.
@@ -29,12 +29,12 @@ pub(crate) enum ModelRequest {
 }
 
 impl ModelRequest {
-    /// Whether requests of a type are such ones.
+    /// Whether requests of this type are model requests.
     pub(crate) fn is_type(name: &str) -> bool {
         name.starts_with("model ")
     }
 
-    /// Reads a request of such a type: its number, and the request.
+    /// Parses a model request: its number, and the request.
     ///
     /// # Errors
     /// A message for people.

@@ -10,11 +10,11 @@ use serde_json::{Value, json};
 use crate::model_request::ModelRequest;
 use crate::model_workspace::ModelWorkspace;
 
-/// The models that a viewer may edit, and its check that goes on.
+/// The models that a viewer may edit, and its check in progress.
 pub(crate) struct ModelSession {
     workspace: Arc<ModelWorkspace>,
     may_write: bool,
-    /// Ends the check that goes on.
+    /// Cancels the check in progress.
     stop: Arc<AtomicBool>,
     checked: Receiver<Value>,
     sender: Sender<Value>,
@@ -41,7 +41,7 @@ impl ModelSession {
         Some(numbered(id, result))
     }
 
-    /// The reply of a check that has ended.
+    /// The reply of a finished check.
     pub(crate) fn checked(&mut self) -> Option<Value> {
         self.checked.try_recv().ok()
     }
@@ -63,7 +63,7 @@ impl ModelSession {
         }
     }
 
-    /// Checks a text beside the frames, instead of the one that is being checked.
+    /// Checks a text on a thread of its own; replaces the check in progress.
     fn check(&mut self, id: Option<u64>, file: usize, text: String) -> Option<Value> {
         self.stop.store(true, Ordering::SeqCst);
         self.stop = Arc::default();
@@ -74,7 +74,7 @@ impl ModelSession {
         let (workspace, sender, stop) = (self.workspace.clone(), self.sender.clone(), self.stop.clone());
         let check = move || {
             let found = workspace.language().check(&name, &text, &stop);
-            // A page that has left needs no reply.
+            // A disconnected page needs no reply.
             let _ = sender.send(numbered(id, Ok(found)));
         };
         let started = thread::Builder::new().name("studio check".into()).spawn(check);

@@ -8,7 +8,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use serde_json::{Value, json};
 
-/// The names of files that a folder is searched for.
+/// The extensions of model files in a folder.
 const ENDINGS: [&str; 8] = ["srm", "sag", "suc", "aip", "ft", "eac", "iac", "stct"];
 
 /// The longest file, in bytes: a request has its text with escapes.
@@ -32,7 +32,7 @@ pub trait ModelLanguage: Send + Sync {
     /// The replacements of a text that make an edit: a list of `from`, `to` and `insert`.
     ///
     /// # Errors
-    /// Why it is not possible, for people.
+    /// The reason why the edit is not possible, as a sentence.
     fn edit(&self, text: &str, edit: Value) -> Result<Value, String>;
 }
 
@@ -41,15 +41,16 @@ pub trait ModelLanguage: Send + Sync {
 pub struct ModelWorkspace {
     files: Vec<ModelFile>,
     language: Arc<dyn ModelLanguage>,
-    /// Held while a file is compared and replaced: of two pages that save, the second is refused.
+    /// Held while a file is compared and replaced: if two pages save at once, the second is
+    /// refused.
     saving: Mutex<()>,
 }
 
 /// A file that can be edited.
 struct ModelFile {
-    /// As it was given.
+    /// The path as given.
     name: String,
-    /// Without links, so that the file itself is replaced.
+    /// The path with links resolved, so that the file itself is replaced.
     path: PathBuf,
 }
 
@@ -57,7 +58,7 @@ impl ModelWorkspace {
     /// The files at these paths, each once; of a folder all that are named like a model.
     ///
     /// # Errors
-    /// There is no file, or a path is none.
+    /// There is no file, or a path does not exist.
     pub fn new(paths: &[PathBuf], language: Arc<dyn ModelLanguage>) -> io::Result<ModelWorkspace> {
         let file = |path: PathBuf| {
             let name = path.display().to_string();
@@ -95,7 +96,7 @@ impl ModelWorkspace {
         self.file(file).map(|file| file.name.as_str())
     }
 
-    /// A file's text, and the revision by which a page says what it has read.
+    /// A file's text, and its revision, which a page sends back on saving.
     pub(crate) fn open(&self, file: usize) -> Result<Value, String> {
         let file = self.file(file)?;
         let text = file.read()?.ok_or_else(|| format!("{}: the file was deleted", file.name))?;

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 /// How many seconds of simulated time pass in a second, shared between a run and its viewers.
 ///
-/// It is no part of the run: the same seed gives the same messages at any pace.
+/// It is not part of the run: the same seed gives the same messages at any pace.
 ///
 /// ```
 /// let pace = monas_studio::Pace::new(1.0);

@@ -16,7 +16,7 @@ use crate::tape_run::{TapeChart, TapeRun};
 /// A field, a constant or a timer in a condition.
 #[derive(Clone, PartialEq, Default, Debug, Serialize)]
 pub struct ReadValue {
-    /// As it is written.
+    /// The name as written.
     pub name: String,
     /// Its value; null if no message had been delivered. That of a timer is whether it has expired;
     /// null if it was never started.
@@ -44,7 +44,7 @@ pub struct ReadValue {
 #[derive(Clone, Copy)]
 pub(crate) struct ReadMoment<'a> {
     pub(crate) chart: &'a TapeChart,
-    /// Whose blackboard is read.
+    /// The scope whose blackboard is read.
     pub(crate) scope: ScopeId,
     /// The number of messages on the tape before the moment.
     pub(crate) count: usize,

@@ -1,4 +1,4 @@
-//! Changes a run for viewers that are allowed to.
+//! Executes control requests of viewers that are allowed to change the run.
 
 use monas::records::{Change, Changed, Inquiry, Reply};
 use monas_link::control::ControlClient;
@@ -13,8 +13,8 @@ use crate::message_decoder::message_json;
 /// The longest chain of messages within messages that a form shows.
 const DEPTH: usize = 4;
 
-/// Carries out a request of a viewer. Returns the reply without its number: whether it is done, the
-/// reason if it is not, and what there is to know.
+/// Executes a request of a viewer. Returns the reply without its number: success or the reason of
+/// failure, and the results.
 pub(crate) fn execute(state: &LiveState, request: ControlRequest) -> Value {
     let result = match request {
         ControlRequest::Change { host, change } => change_agents(state, host, *change),

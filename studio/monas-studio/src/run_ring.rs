@@ -1,4 +1,4 @@
-//! The latest part of a run in progress, so that its moments can be looked at again.
+//! The latest part of a run in progress, so that past moments can be viewed.
 
 use std::collections::VecDeque;
 
@@ -10,7 +10,7 @@ use crate::chart_view::{ChartKey, seconds};
 use crate::run_view::{CHART, RunView, ViewedMessage};
 use crate::scene::SceneEvent;
 
-/// The most bytes of messages and tables that are kept, with what each message costs besides its
+/// The most bytes of messages and tables that are kept, and the overhead of a message besides its
 /// content.
 const BYTES: usize = 64 << 20;
 const OVERHEAD: usize = 64;
@@ -55,8 +55,8 @@ struct KeptChannel {
     is_of_scene: bool,
 }
 
-/// Messages that a view has taken, with some of the moments between them. Memory is bounded: the
-/// oldest are dropped.
+/// Messages that a view has consumed, with snapshots at intervals. Memory is bounded: the oldest
+/// are dropped.
 #[derive(Clone, Default, Debug)]
 pub(crate) struct RunRing {
     channels: Vec<KeptChannel>,
@@ -77,7 +77,7 @@ impl RunRing {
         self.keep_moment(view);
     }
 
-    /// Whether it has begun.
+    /// Whether it has a starting state.
     pub(crate) fn has_begun(&self) -> bool {
         !self.moments.is_empty()
     }
@@ -116,7 +116,8 @@ impl RunRing {
         self.messages.push_back(KeptMessage { channel, time: message.time, bytes });
     }
 
-    /// Keeps the present state if the last one that is kept is old, and drops what is too much.
+    /// Keeps the present state if the last kept one is old enough, and drops the oldest data beyond
+    /// the limits.
     pub(crate) fn keep(&mut self, view: &RunView) {
         let Some(KeptMoment { number, view: last, .. }) = self.moments.back() else { return };
         let is_old = self.end() - number >= INTERVAL || view.now.saturating_sub(last.now) >= SPAN;
@@ -165,7 +166,8 @@ impl RunRing {
         self.advance(&mut view, kept.number, number, time).then_some(view)
     }
 
-    /// Takes the messages from a number up to another into a view. Returns whether all are kept.
+    /// Applies the messages from a number up to another to a view. Returns whether all of them are
+    /// still kept.
     pub(crate) fn advance(&self, view: &mut RunView, from: u64, to: u64, time: u64) -> bool {
         if from < self.first {
             return false;

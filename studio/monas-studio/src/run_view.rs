@@ -12,7 +12,7 @@ use crate::chart_view::{ChartKey, ChartView, seconds};
 use crate::message_decoder::MessageDecoder;
 use crate::scene::{Scene, ScenePicture};
 
-/// How many lines of the log are kept.
+/// The number of log lines that are kept.
 const LINES: usize = 500;
 
 /// The topics of records.
@@ -56,7 +56,7 @@ pub(crate) enum Link {
 /// The state of a run.
 #[derive(Clone, Default, Debug)]
 pub(crate) struct RunView {
-    /// Counts connections: after another one a viewer forgets everything.
+    /// Counts connections: when it changes, a viewer discards its state.
     pub(crate) epoch: u64,
     pub(crate) link: Link,
     pub(crate) name: String,
@@ -97,19 +97,19 @@ pub(crate) struct ViewCursor {
 }
 
 impl RunView {
-    /// Begins another connection: nothing of the last one holds.
+    /// Begins a new connection: discards the state of the previous one.
     pub(crate) fn begin(&mut self) {
         *self = RunView { epoch: self.epoch + 1, ..RunView::default() };
     }
 
-    /// Takes a message of a topic that is watched.
+    /// Applies a message of a watched topic.
     pub(crate) fn take(&mut self, message: &ViewedMessage<'_>, is_of_scene: bool) {
         match message.topic {
             CHART => self.take_step(message),
             MODEL => {
                 if let Ok(model) = Model::decode(message.bytes) {
                     let key = key(message, model.chart);
-                    // The chart may have been exchanged: its shapes are asked for again.
+                    // The chart may have been replaced: its shapes are requested again.
                     if let Some(view) = self.charts.get_mut(&key) {
                         view.mark_stale();
                     }
@@ -148,7 +148,7 @@ impl RunView {
         self.line_count += 1;
     }
 
-    /// Takes the state of a chart.
+    /// Applies the state of a chart.
     pub(crate) fn load_chart(&mut self, key: ChartKey, state: &ChartState) {
         self.charts.entry(key).or_default().load(state);
     }
@@ -188,7 +188,7 @@ impl RunView {
         self.set_table_objects(agents.iter().map(agent_object).collect(), topics);
     }
 
-    /// Everything that a viewer has not seen; `None` if there is nothing.
+    /// The update for a viewer; `None` if nothing has changed.
     pub(crate) fn frame(&mut self, cursor: &mut ViewCursor, scene: Option<&dyn Scene>) -> Option<Value> {
         let mut frame = json!({"type": "frame", "now": seconds(self.now)});
         let is_new = cursor.epoch != Some(self.epoch);

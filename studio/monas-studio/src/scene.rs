@@ -7,7 +7,7 @@ use serde_json::Value;
 
 use crate::cameras::Cameras;
 
-/// A view from above, which a program gives: the studio knows no sport.
+/// A view from above, provided by the program: the studio does not depend on a sport.
 ///
 /// The plane has x to the right and y up, in metres; headings are in radians.
 pub trait Scene: Send + Sync {
@@ -19,7 +19,7 @@ pub trait Scene: Send + Sync {
         &[]
     }
 
-    /// The event that a message on such a topic is, if it is one, from its protobuf encoding.
+    /// The event that a message on such a topic represents, if any, from its protobuf encoding.
     fn event(&self, host: &str, topic: &str, bytes: &[u8]) -> Option<SceneEvent> {
         let _ = (host, topic, bytes);
         None
@@ -41,8 +41,7 @@ pub struct SceneEvent {
     pub kind: String,
     /// The text.
     pub text: String,
-    /// Whether it lasts: messages of one publisher that follow each other and are equal events are
-    /// one event.
+    /// Whether it lasts: consecutive equal events of one publisher are one event.
     #[serde(skip)]
     pub lasts: bool,
 }
@@ -78,9 +77,9 @@ impl<'a> SceneMessages<'a> {
 pub struct ScenePicture {
     /// Static contents.
     pub ground: Ground,
-    /// Robots where they are.
+    /// Robots at their true positions.
     pub bodies: Vec<Body>,
-    /// Other things where they are.
+    /// Other objects at their true positions.
     pub objects: Vec<SceneObject>,
     /// Positions as hosts believe them.
     pub beliefs: Vec<Belief>,

@@ -1,4 +1,4 @@
-//! A picture from above as a scene in three dimensions, by Foxglove's schema.
+//! Converts a view from above to a three-dimensional scene in Foxglove's schema.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::PI;

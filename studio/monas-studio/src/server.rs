@@ -30,7 +30,7 @@ use crate::tape_pair::TapePair;
 use crate::tape_run::TapeRun;
 use crate::viewer;
 
-/// The port that is tried first, and how many after it.
+/// The first port to try, and the number of ports after it.
 const PORT: u16 = 4810;
 const PORTS: u16 = 20;
 
@@ -40,7 +40,7 @@ const CONNECTION_LIMIT: usize = 32;
 /// The most viewers at a time: a run serves at most 16 tools, and each viewer may watch a topic.
 const VIEWER_LIMIT: usize = 8;
 
-/// The longest that sending a file may take.
+/// The time limit for sending a file.
 const SLOWEST: Duration = Duration::from_secs(5);
 
 /// Headers of every reply: nothing is stored, framed, or fetched from elsewhere.
@@ -63,7 +63,7 @@ impl FromStr for ListenAddress {
     }
 }
 
-/// How a studio is served.
+/// Settings of a studio.
 #[derive(Clone, Default)]
 pub struct StudioSettings {
     /// The address; the first free port from 4810 on of loopback if not given. For any other
@@ -74,7 +74,7 @@ pub struct StudioSettings {
     /// The pace of simulated time, if viewers may set it.
     pub pace: Option<Pace>,
     /// Origins of pages that may read a run by Foxglove's protocol, such as
-    /// `https://app.foxglove.dev`; programs that are no pages need no origin.
+    /// `https://app.foxglove.dev`; programs that are not pages need no origin.
     pub origins: Vec<String>,
     /// Whether viewers may change the run: its agents and models, messages, and events.
     pub allows_control: bool,
@@ -83,7 +83,7 @@ pub struct StudioSettings {
     pub models: Option<Arc<ModelWorkspace>>,
 }
 
-/// A running studio; dropping it ends it.
+/// A running studio. Dropping it stops the server.
 pub struct Studio {
     url: String,
     address: SocketAddr,
@@ -211,7 +211,7 @@ fn accept(listener: &TcpListener, state: &Arc<ServerState>) {
         };
         let name = "studio viewer".to_owned();
         let served = thread::Builder::new().name(name).spawn(move || {
-            // A peer that has left needs no report.
+            // A disconnected peer needs no report.
             let _ = slot.state.handle(stream);
         });
         threads.extend(served);

@@ -20,7 +20,7 @@ pub(crate) trait Source: Send + Sync {
         false
     }
 
-    /// The run that is served to viewers of others, if it is one.
+    /// The run for third-party viewers, if the source is a run.
     #[cfg(unix)]
     fn live_state(&self) -> Option<Arc<LiveState>> {
         None

@@ -1,4 +1,4 @@
-//! A recorded run, opened at any moment.
+//! A recorded run with random access by time.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -56,12 +56,11 @@ pub(crate) struct TapeChannel {
     pub(crate) kind: String,
     pub(crate) message_type: String,
     pub(crate) is_of_scene: bool,
-    /// Whether a view takes its messages.
+    /// Whether a view uses its messages.
     pub(crate) is_viewed: bool,
 }
 
-/// A recording that is read once and indexed, so that each of its moments can be looked at. Clones
-/// share it.
+/// A recording that is read once and indexed, so that each moment can be viewed. Clones share it.
 #[derive(Clone)]
 pub struct TapeRun(Arc<TapeIndex>);
 

@@ -1,4 +1,4 @@
-//! A viewer of a tape: the moment that it sees.
+//! A viewer of a tape, with its moment.
 
 use std::time::Duration;
 
@@ -13,13 +13,13 @@ use crate::tape_moment::TapeMoment;
 use crate::tape_run::TapeRun;
 use crate::viewer_request::ViewerRequest;
 
-/// The fastest playing.
+/// The fastest playback.
 const FASTEST: f64 = 1000.0;
 
-/// The time on the tape between two looks at the tables, in nanoseconds.
+/// The interval of updates of the tables, nanoseconds on the tape.
 const TABLES: u64 = 500_000_000;
 
-/// The time on a tape that plays between two looks at the values of a chart, in nanoseconds.
+/// The interval of updates of the values of a chart during playback, nanoseconds on the tape.
 const VALUES: u64 = 200_000_000;
 
 /// The view of one viewer, which plays and seeks for itself.
@@ -29,9 +29,9 @@ pub(crate) struct TapeSession {
     cursor: ViewCursor,
     /// How many seconds of the tape are played in a second; 0 while it is held.
     factor: f64,
-    /// Whether the viewer has to be sent the facts of the tape.
+    /// Whether the data of the tape still have to be sent to the viewer.
     is_new: bool,
-    /// Whether it has to forget what it has, since the moment is not a later one.
+    /// Whether it has to discard its state, because the moment has moved backwards.
     is_elsewhere: bool,
     /// The moment of the last tables.
     tables: Option<u64>,
@@ -170,8 +170,7 @@ impl TapeSession {
 }
 
 impl TapeSession {
-    /// The values of the chosen chart, if they are of another moment than before; of a tape that
-    /// plays, now and then.
+    /// The values of the chosen chart, if the moment has changed; during playback at intervals.
     fn chart_values(&mut self) -> Option<Value> {
         let key = self.values.as_ref()?;
         let (count, now) = (self.moment.count, self.moment.view.now);
@@ -184,7 +183,7 @@ impl TapeSession {
         Some(self.tape.values_until(chart, active, count, now))
     }
 
-    /// The images at the moment, if they are others than before.
+    /// The images at the moment, if they have changed.
     fn images(&mut self, elapsed: Duration) -> Option<Value> {
         let cameras = cameras::of(self.tape.scene())?;
         let camera = self.camera.as_mut()?;

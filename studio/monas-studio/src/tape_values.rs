@@ -11,7 +11,7 @@ use crate::chart_view::seconds;
 use crate::read_value::ReadMoment;
 use crate::tape_run::{TapeChart, TapeRun};
 
-/// The cycles of an agent before a moment whose deliveries are looked through.
+/// The number of cycles of an agent before a moment whose deliveries are searched.
 const CYCLES: usize = 1000;
 
 impl TapeRun {

@@ -1,4 +1,4 @@
-//! Why a transition fired at a moment, or did not.
+//! Explanations why a transition fired at a moment, or did not.
 
 use monas::records::Model;
 use prost::Message;
@@ -28,7 +28,7 @@ pub struct TransitionQuestion<'a> {
     pub seconds: f64,
 }
 
-/// Whether a transition was taken when its source was left last, or still waits.
+/// The outcome for a transition when its source was last exited, or so far.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
@@ -42,7 +42,7 @@ pub enum Verdict {
     NotReached,
 }
 
-/// Why a transition fired at a moment, or did not.
+/// Explanation why a transition fired at a moment, or did not.
 #[derive(Clone, PartialEq, Debug, Serialize)]
 pub struct TransitionExplanation {
     /// The host of the agent.
@@ -59,7 +59,7 @@ pub struct TransitionExplanation {
     pub text: String,
     /// The result.
     pub verdict: Verdict,
-    /// The same in words.
+    /// The outcome in words.
     pub reason: String,
     /// The time of the values, s; none if its source was not active before.
     pub judged: Option<f64>,

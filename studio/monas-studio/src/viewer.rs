@@ -18,12 +18,12 @@ use crate::viewer_request::ViewerRequest;
 /// The interval between two frames.
 const FRAME: Duration = Duration::from_nanos(1_000_000_000 / 30);
 
-/// The longest that a page may take to receive a frame; a slower one is disconnected.
+/// The time limit for a page to receive a frame; slower pages are disconnected.
 const SLOWEST: Duration = Duration::from_secs(5);
 
-/// How long to wait for the page's reply to the end of the studio: a page on a busy computer may be
-/// slow, and one that has frozen must not hold up the end of a run for longer.
-const FAREWELL: Duration = Duration::from_secs(2);
+/// The wait for the page's reply to the end of the studio: a page on a busy computer may be slow,
+/// and a frozen page must not delay the end of a run any longer.
+const CLOSE_TIMEOUT: Duration = Duration::from_secs(2);
 
 /// The longest request of a page, in bytes; of one that may change the run or edit models.
 const REQUEST_LIMIT: usize = 16 << 10;
@@ -37,8 +37,8 @@ pub(crate) fn request_limit(sends_texts: bool) -> usize {
     if sends_texts { CONTROL_LIMIT } else { REQUEST_LIMIT }
 }
 
-/// Serves a page until it leaves, is too slow, sends a request of more than `limit` bytes, or the
-/// studio ends.
+/// Serves a page until it disconnects, is too slow, sends a request of more than `limit` bytes, or
+/// the studio ends.
 pub(crate) fn serve(
     stream: TcpStream,
     mut session: Box<dyn Session>,
@@ -99,7 +99,8 @@ fn exchange(
     close(&mut socket, CloseCode::Away, "the studio has ended")
 }
 
-/// Closes a connection with the reason: a browser does not give a page that of a refused handshake.
+/// Closes a connection with the reason, which a browser would not pass to the page for a refused
+/// handshake.
 pub(crate) fn refuse(stream: TcpStream, reason: &str) {
     let refuse = || {
         stream.set_write_timeout(Some(SLOWEST))?;
@@ -118,7 +119,7 @@ fn close(socket: &mut WebSocket<TcpStream>, code: CloseCode, reason: &str) -> tu
     socket.flush()?;
     // Read the remaining data of the page, or else the system resets the connection, and the page
     // may lose the reason. At its reply the socket reports that it is closed.
-    let deadline = now() + FAREWELL;
+    let deadline = now() + CLOSE_TIMEOUT;
     while now() < deadline {
         next_request(socket, deadline.saturating_duration_since(now()))?;
     }

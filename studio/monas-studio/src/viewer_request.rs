@@ -25,9 +25,9 @@ pub(crate) enum ViewerRequest {
     Live,
     /// Another moment of a run or a tape, in seconds.
     Seek(f64),
-    /// Why a state is active, or was last, at the moment of a tape.
+    /// An explanation why a state is active, or was last active, at the moment of a tape.
     Why { key: String, node: u32 },
-    /// Why a transition fired, or did not, at the moment of a tape.
+    /// An explanation why a transition fired, or did not, at the moment of a tape.
     WhyTransition { key: String, transition: u32 },
     /// The next firing of a transition on a tape, or the one before.
     Jump { key: String, transition: u32, is_back: bool },

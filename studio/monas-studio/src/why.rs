@@ -1,4 +1,5 @@
-//! Why a state is active: the transitions that led to it, and what their conditions read.
+//! Explanations why a state is active: the transitions that led to it, and the values that their
+//! conditions read.
 
 use std::collections::BTreeMap;
 
@@ -28,7 +29,7 @@ pub struct WhyQuestion<'a> {
     pub seconds: f64,
 }
 
-/// Why a state was active at a moment, or was so last.
+/// Explanation why a state was active at a moment, or when it was last active.
 #[derive(Clone, PartialEq, Debug, Serialize)]
 pub struct Explanation {
     /// The host of the agent.
@@ -121,7 +122,7 @@ impl TapeRun {
         Ok(())
     }
 
-    /// The only chart of a host, or of one of its agents, that has what is looked for.
+    /// The only chart of a host, or of one of its agents, that satisfies a condition.
     pub(crate) fn one_chart<T: Copy>(
         &self,
         host: &str,

@@ -422,7 +422,7 @@ fn a_transition_that_does_not_fire_names_the_parts_of_its_guard_with_their_value
     assert!(early.reason.contains("its guard was false: `Log.message == \"go\"`"), "{}", early.reason);
     let link = &early.chains[0].links[0];
     assert_eq!((link.publisher.as_str(), link.topic.as_str()), ("tester", "test/note"));
-    assert!(link.end.as_ref().unwrap().contains("`tester` is no agent"), "{link:?}");
+    assert!(link.end.as_ref().unwrap().contains("`tester` is not an agent"), "{link:?}");
 
     let fired = ask("1", 5.0).unwrap();
     assert_eq!((fired.verdict, fired.guard, fired.judged), (Verdict::Fired, Some(true), Some(5.0)));
