@@ -179,7 +179,7 @@ pub(crate) fn run(root: &Path) -> Result<ExitCode, Box<dyn Error>> {
     expressions(&team, &cargo)?;
     module(&team, &monas, &cargo)?;
     println!(
-        "project: made, built from {crates} crates, tested, run; what was added is found, what a generated chart lacks is no program, a module is exchanged"
+        "project: made, built from {crates} crates, tested, run; what was added is found, what a generated chart lacks is not a program, a module is exchanged"
     );
     Ok(ExitCode::SUCCESS)
 }

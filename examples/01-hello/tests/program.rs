@@ -14,7 +14,7 @@ fn greetings(count: usize) -> Result<Vec<f64>, Box<dyn Error>> {
     program.wait()?;
     lines?
         .iter()
-        .map(|line| second_of(line).ok_or_else(|| format!("`{line}` is no greeting").into()))
+        .map(|line| second_of(line).ok_or_else(|| format!("`{line}` is not a greeting").into()))
         .collect()
 }
 

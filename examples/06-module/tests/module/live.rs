@@ -126,7 +126,11 @@ fn a_files_description_is_available_as_json() {
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/robot.xml");
     let wrong = ask(folder.path(), &["module", "show", file]);
     assert_eq!(wrong.code, Some(3));
-    assert!(wrong.err.contains("E0360") && wrong.err.contains("this is no module of Monas"), "{}", wrong.err);
+    assert!(
+        wrong.err.contains("E0360") && wrong.err.contains("this is not a module of Monas"),
+        "{}",
+        wrong.err
+    );
 }
 
 #[test]

@@ -1,21 +1,21 @@
-//! Checks the road of a message in ARCHITECTURE.md: the files exist, the functions named are
-//! defined there, and the road is no longer than it was.
+//! Checks the path of a message in ARCHITECTURE.md: the files exist, the functions named are
+//! defined there, and the path is no longer than it was.
 
 use std::path::Path;
 
 use super::TidyFinding;
 use super::workspace::Workspace;
 
-/// The map that lists the road.
+/// The page that lists the path.
 const MAP: &str = "ARCHITECTURE.md";
 
 /// The heading above the list.
-const HEADING: &str = "## The road of a message";
+const HEADING: &str = "## The path of a message";
 
-/// The road has at most this many files.
+/// The path has at most this many files.
 const MOST: usize = 20;
 
-/// One stop of the road: its line in the map, its file, and what the text says of it.
+/// One stop of the path: its line in the map, its file, and what the text says of it.
 struct Stop<'a> {
     line: usize,
     file: &'a str,
@@ -27,7 +27,7 @@ pub(crate) fn check(workspace: &Workspace) -> Vec<TidyFinding> {
     let stops = stops(&map.text);
     let mut findings = Vec::new();
     if stops.is_empty() || stops.len() > MOST {
-        let message = format!("the road of a message has {} files: 1 to {MOST}", stops.len());
+        let message = format!("the path of a message has {} files: 1 to {MOST}", stops.len());
         findings.push(TidyFinding::new(MAP, 1, message));
     }
     for stop in &stops {
@@ -84,10 +84,10 @@ mod tests {
     }
 
     #[test]
-    fn functions_on_the_road_exist() {
-        let road = |stop: &str| findings(&format!("# Map\n{HEADING}\n\n{stop}\n"));
-        assert!(road("1. `a.rs`: `Machine::step` runs.").is_empty());
-        assert_eq!(road("1. `a.rs`: `Machine::leap`\n   and `step` run.").len(), 1);
-        assert_eq!(road("nothing")[0], "ARCHITECTURE.md:1: the road of a message has 0 files: 1 to 20");
+    fn functions_on_the_path_exist() {
+        let stops_of = |stop: &str| findings(&format!("# Map\n{HEADING}\n\n{stop}\n"));
+        assert!(stops_of("1. `a.rs`: `Machine::step` runs.").is_empty());
+        assert_eq!(stops_of("1. `a.rs`: `Machine::leap`\n   and `step` run.").len(), 1);
+        assert_eq!(stops_of("nothing")[0], "ARCHITECTURE.md:1: the path of a message has 0 files: 1 to 20");
     }
 }
