@@ -62,16 +62,32 @@
 //! let guard = compiled.expect("every name is known").guard.expect("it has a guard");
 //! assert_eq!(guard.reads(), [TopicId(0)]);
 //!
-//! // The data of a step: the distance of the ball, or no message about it. struct
-//! Seen(Option<f64>); impl EvalContext for Seen { fn field(&self, _: &MessageSource, path:
-//! &[FieldId]) -> Value<'_> { match (self.0, path) { (Some(_), [FieldId(0)]) => Value::Bool(true),
-//! (Some(distance), [FieldId(1)]) => Value::Float(distance), _ => Value::Missing, } } fn
-//! message(&self, _: &MessageSource) -> Value<'_> { Value::Missing } fn call(&self, _: FunctionId,
-//! _: &[Value<'_>]) -> Result<Value<'_>, CallError> { Err(CallError::new("there are no functions"))
-//! } fn timer(&self, _: TimerId) -> TimerState { TimerState::Unset } fn is_active(&self, _: NodeId)
-//! -> bool { false } } assert_eq!(guard.evaluate(&Seen(Some(0.5))), Ok(true));
-//! assert_eq!(guard.evaluate(&Seen(Some(0.1))), Ok(false)); assert_eq!(guard.evaluate(&Seen(None)),
-//! Ok(false)); // unknown does not fire
+//! // The data of a step: the distance of the ball, or no message about it.
+//! struct Seen(Option<f64>);
+//! impl EvalContext for Seen {
+//!     fn field(&self, _: &MessageSource, path: &[FieldId]) -> Value<'_> {
+//!         match (self.0, path) {
+//!             (Some(_), [FieldId(0)]) => Value::Bool(true),
+//!             (Some(distance), [FieldId(1)]) => Value::Float(distance),
+//!             _ => Value::Missing,
+//!         }
+//!     }
+//!     fn message(&self, _: &MessageSource) -> Value<'_> {
+//!         Value::Missing
+//!     }
+//!     fn call(&self, _: FunctionId, _: &[Value<'_>]) -> Result<Value<'_>, CallError> {
+//!         Err(CallError::new("there are no functions"))
+//!     }
+//!     fn timer(&self, _: TimerId) -> TimerState {
+//!         TimerState::Unset
+//!     }
+//!     fn is_active(&self, _: NodeId) -> bool {
+//!         false
+//!     }
+//! }
+//! assert_eq!(guard.evaluate(&Seen(Some(0.5))), Ok(true));
+//! assert_eq!(guard.evaluate(&Seen(Some(0.1))), Ok(false));
+//! assert_eq!(guard.evaluate(&Seen(None)), Ok(false)); // unknown does not fire
 //! ```
 //!
 //! # The language
