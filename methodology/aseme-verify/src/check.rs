@@ -97,7 +97,12 @@ pub const CHECKS: &[Check] = {
     use Severity::{Error, Information, Warning};
     &[
         of("M01", Structure, Error, "a composite without a valid START"),
-        of("M02", Structure, Error, "START or END in a wrong place; a state without an exit that is no END"),
+        of(
+            "M02",
+            Structure,
+            Error,
+            "START or END in a wrong place; a state without an exit that is not an END",
+        ),
         of("M03", Structure, Error, "a transition to an invalid target"),
         of("M04", Structure, Error, "FORK or JOIN between states that are not active together"),
         of("M05", Guards, Error, "a branch that may have no enabled transition"),
@@ -114,7 +119,7 @@ pub const CHECKS: &[Check] = {
         of("M11", Structure, Warning, "a region that reads what another one may write in the same step"),
         of("M12", Exploration, Warning, "a state that is never reached, a transition that is never taken"),
         of("M13", Exploration, Error, "a livelock: transitions that repeat within one step"),
-        of("M14", Exploration, Warning, "a state that is never left and is no END"),
+        of("M14", Exploration, Warning, "a state that is never left and is not an END"),
         of("M15", Exploration, Warning, "a transition that waits for a composite that never completes"),
         of("M16", Structure, Warning, "an event that is never raised or never awaited"),
         of(
@@ -159,7 +164,7 @@ pub const CHECKS: &[Check] = {
         of("S02", Roles, Warning, "a functionality that no activity uses"),
         of("S03", Roles, Warning, "an activity in no formula"),
         of("S04", Roles, Warning, "a participant of no protocol"),
-        of("S05", Roles, Warning, "a name in a formula that is no activity of the model"),
+        of("S05", Roles, Warning, "a name in a formula that is not an activity of the model"),
     ]
 };
 

@@ -233,7 +233,7 @@ fn check_encodable(text: &str) -> Result<(), ValueError> {
 pub(crate) fn value_of<T: FromStr>(element: &Element) -> Result<T, ValueError> {
     element.text().parse().map_err(|_| {
         let (name, text) = (element.name(), element.text());
-        let message = format!("`<{name}>` is `{text}`, which is no {}", type_name::<T>());
+        let message = format!("`<{name}>` is `{text}`, which is not of type {}", type_name::<T>());
         ValueError::new(element.error("E0306", element.text_span(), message))
     })
 }
@@ -245,7 +245,8 @@ fn attributes_of<T: FromStr>(element: &Element) -> Result<BTreeMap<String, T>, V
 /// An attribute as a value.
 pub(crate) fn attribute_value<T: FromStr>(given: &Attribute) -> Result<T, ValueError> {
     given.value.trim().parse().map_err(|_| {
-        let message = format!("`{}` is `{}`, which is no {}", given.name, given.value, type_name::<T>());
+        let message =
+            format!("`{}` is `{}`, which is not of type {}", given.name, given.value, type_name::<T>());
         ValueError::new(given.error("E0306", message))
     })
 }

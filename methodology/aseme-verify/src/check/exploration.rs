@@ -274,14 +274,14 @@ impl ExplorationCheck<'_> {
         stuck.collect()
     }
 
-    /// M14: a state that is never left and is no END.
+    /// M14: a state that is never left and is not an END.
     fn dead_ends(&self, stuck: &[NodeId]) -> Vec<Finding> {
         let mut findings: Vec<Finding> = stuck
             .iter()
             .filter_map(|&id| {
                 let state = self.found.first(|state| state.is_active(id))?;
                 let message =
-                    format!("`{}` is reachable and never left, but is no END", self.subject.path(id));
+                    format!("`{}` is reachable and never left, but is not an END", self.subject.path(id));
                 let found = self.subject.warn("M14", id, message).with_hint("see the trace");
                 Some(Self::with_trace(found, &self.found.trace_to(state)))
             })

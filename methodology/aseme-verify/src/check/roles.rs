@@ -138,7 +138,8 @@ fn unknown_names(
     let unknown = names(role).into_iter().filter(|name| !activities.contains(name.as_str()));
     unknown
         .map(|name| {
-            let message = format!("`{name}` in the formulas of `{}` is no activity of the model", role.name);
+            let message =
+                format!("`{name}` in the formulas of `{}` is not an activity of the model", role.name);
             let found = warning("S05", role.liveness_place.0, message, "add an activity of that name");
             found.with_suggestion(suggestions, &name, known())
         })

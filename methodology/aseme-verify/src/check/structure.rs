@@ -47,7 +47,7 @@ fn sink(subject: &CheckedModel, id: NodeId) -> Option<Diagnostic> {
     // a composite that holds states continues inside
     let is_leaf = subject.chart.children(id).is_empty();
     (is_sink && is_leaf).then(|| {
-        let message = format!("no transition leads out of `{}`, which is no END", subject.path(id));
+        let message = format!("no transition leads out of `{}`, which is not an END", subject.path(id));
         subject
             .warn("M02", id, message)
             .with_hint("add a transition to END, or an exit with an event or a guard")

@@ -690,7 +690,7 @@ async function steering(browser) {
   await publishing.click();
   await form.getByLabel('distance').fill('far');
   await form.getByRole('button', { name: /Publish on red-1/ }).click();
-  await form.locator('.outcome', { hasText: 'distance is no number' }).waitFor();
+  await form.locator('.outcome', { hasText: 'distance is not a number' }).waitFor();
   await page.getByRole('button', { name: 'Close' }).click();
   await page.getByLabel('Filter topics').fill('sim/referee');
   await page.locator('tr.choice', { hasText: 'sim/referee' }).filter({ hasText: 'field' }).click();

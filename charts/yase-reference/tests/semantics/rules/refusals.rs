@@ -53,7 +53,7 @@ fn r12_forks_that_do_not_lead_into_different_regions_are_refused() {
     );
     assert_eq!(
         with("    < f\n    A -> f : e\n    f -> B : [true]\n    f -> D : g"),
-        "error[M04]: a transition out of `c/f` cannot wait for an event (write the trigger where the way begins)"
+        "error[M04]: a transition out of `c/f` cannot wait for an event (write the trigger where the path begins)"
     );
     assert_eq!(
         with("    < f\n    A -> f : e\n    f -> B : [true]\n    f -> D"),

@@ -92,7 +92,7 @@ fn r01_what_stands_where_it_cannot_is_refused() {
         refusal("START\nEND\nA\nc/START -> A\nc/END -> A\nA -> c/START\nc/START -> A : e"),
         "error[M02]: no transition can leave `c/END`\n\
          error[M02]: no transition can enter `c/START` (enter the composite: it begins at its START)\n\
-         error[M02]: a transition out of `c/START` cannot wait for an event (write the trigger where the way begins)"
+         error[M02]: a transition out of `c/START` cannot wait for an event (write the trigger where the path begins)"
     );
     let mut chart = Statechart::new("c");
     let start = chart.add(Statechart::ROOT, Node::new(NodeKind::Start, ""));

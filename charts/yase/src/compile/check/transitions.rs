@@ -70,7 +70,7 @@ impl ChartValidator<'_> {
             _ => "M02",
         };
         let message = format!("a transition out of `{}` cannot wait for an event", self.path(source));
-        self.error(code, message).hint = Some("write the trigger where the way begins".into());
+        self.error(code, message).hint = Some("write the trigger where the path begins".into());
     }
 
     fn internal(&mut self, transition: &Transition) {

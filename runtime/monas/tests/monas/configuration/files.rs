@@ -117,10 +117,10 @@ fn io_errors_are_reported_with_positions() {
     let config = XmlConfig::from_text("a.xml", "<a>quick</a>\n<b x=1 y=z/>");
     assert_eq!(
         config.element::<f64>("a").unwrap_err().to_string(),
-        "a.xml:1:4: error[E0306]: `<a>` is `quick`, which is no f64"
+        "a.xml:1:4: error[E0306]: `<a>` is `quick`, which is not of type f64"
     );
     let findings = config.attributes::<f64>("b").unwrap_err().to_string();
-    assert_eq!(findings, "a.xml:2:10: error[E0306]: `y` is `z`, which is no f64");
+    assert_eq!(findings, "a.xml:2:10: error[E0306]: `y` is `z`, which is not of type f64");
     let mut broken = XmlConfig::from_text("a.xml", "<a>1");
     assert!(!broken.is_loaded());
     assert_eq!(broken.set_element("a", 2, false).unwrap_err().diagnostic().code, "E0301");
@@ -155,7 +155,7 @@ fn a_tree_is_queried_from_the_root_and_from_a_node() {
     assert!(tree.query::<String, String, String>("activity").unwrap().is_empty());
     assert!(tree.query::<String, char, String>("agent").is_ok());
     let error = tree.query_within::<f64, f64, String, _, _, _>("name", &agents[0]).unwrap_err();
-    assert_eq!(error.to_string(), "a.xml:1:25: error[E0306]: `<name>` is `A`, which is no f64");
+    assert_eq!(error.to_string(), "a.xml:1:25: error[E0306]: `<name>` is `A`, which is not of type f64");
     assert_eq!(Xml::open("nowhere.xml").diagnostics()[0].code, "E0316");
 }
 

@@ -19,13 +19,13 @@ export function formValue(field: FormField, text: string): { value: Json } | { f
       return { value: text === 'true' };
     case 'integer':
       // As a text it keeps its 64 bits.
-      return INTEGER.test(trimmed) ? { value: trimmed } : { fault: `${field.name} is no integer` };
+      return INTEGER.test(trimmed) ? { value: trimmed } : { fault: `${field.name} is not an integer` };
     case 'number': {
       const number = Number(trimmed);
       if (WORDS.includes(trimmed)) {
         return { value: trimmed };
       }
-      return trimmed !== '' && Number.isFinite(number) ? { value: number } : { fault: `${field.name} is no number` };
+      return trimmed !== '' && Number.isFinite(number) ? { value: number } : { fault: `${field.name} is not a number` };
     }
     case 'json':
       try {
