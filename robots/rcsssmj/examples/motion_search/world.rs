@@ -5,7 +5,7 @@ use std::io::{Read, Write};
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 
 use monas_rcsssmj::walk::{Motion, Motors};
-use monas_rcsssmj::{Humanoid, Inertia, JOINTS};
+use monas_rcsssmj::{Humanoid, InclinationFilter, JOINTS};
 
 const PROGRAM: &str = include_str!("physics.py");
 /// The numbers of a state after those of the joints.
@@ -34,7 +34,7 @@ pub(crate) struct World {
     process: Child,
     commands: ChildStdin,
     states: ChildStdout,
-    inertia: Inertia,
+    inclination: InclinationFilter,
     /// Commands computed from the last state: the server moves the motors a cycle later.
     motors: Motors,
 }
@@ -52,12 +52,19 @@ impl World {
         let (Some(commands), Some(states)) = (process.stdin.take(), process.stdout.take()) else {
             return Err("python3 has no standard input or output".into());
         };
-        Ok(World { robot, process, commands, states, inertia: Inertia::default(), motors: Motors::default() })
+        Ok(World {
+            robot,
+            process,
+            commands,
+            states,
+            inclination: InclinationFilter::default(),
+            motors: Motors::default(),
+        })
     }
 
     /// Puts the robot upright at the origin, and the ball to a place.
     pub(crate) fn reset(&mut self, ball: [f64; 2]) -> Result<State, Box<dyn Error>> {
-        (self.inertia, self.motors) = (Inertia::default(), Motors::default());
+        (self.inclination, self.motors) = (InclinationFilter::default(), Motors::default());
         self.send(&[0.0, ball[0], ball[1]])?;
         self.receive()
     }
@@ -93,10 +100,15 @@ impl World {
             std::array::from_fn(|joint| if joint < joints { numbers[first + joint] } else { 0.0 })
         };
         let (gyro, acceleration) = (three(2 * joints), three(2 * joints + 3));
-        self.inertia.advance(gyro, acceleration, CYCLE);
+        self.inclination.advance(gyro, acceleration, CYCLE);
         let rest = 2 * joints + 6;
         Ok(State {
-            motion: Motion { positions: all(0), velocities: all(joints), gyro, down: self.inertia.down() },
+            motion: Motion {
+                positions: all(0),
+                velocities: all(joints),
+                gyro,
+                down: self.inclination.down(),
+            },
             place: three(rest),
             heading: numbers[rest + 3],
             upright: numbers[rest + 4],
