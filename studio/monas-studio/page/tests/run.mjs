@@ -362,9 +362,6 @@ async function beside(browser) {
   await first.stop();
   await until(page, 'its end', () => document.querySelector('.link')?.textContent === 'Run ended');
   await page.getByText('What you see is its last moment').waitFor();
-  // what is kept of it can still be looked back at
-  await page.getByLabel('Moment').fill('0');
-  await page.getByText('What you see is a moment before its end').waitFor();
   const second = start(PROGRAM, args, first.folder);
   second.url.catch(() => {});
   await until(page, 'the next run', () => document.querySelector('.link')?.textContent === 'Live');
