@@ -16,7 +16,9 @@ pub(crate) use layers::{LayerArguments, robot_file};
 pub(crate) use model::{valid_chart, valid_model};
 #[cfg(feature = "soccer")]
 pub(crate) use recorded_run::recorded_configuration;
-pub(crate) use recorded_run::{chosen_hosts, recorded_charts, recorded_hosts, replay, run_of};
+pub(crate) use recorded_run::{
+    check_within, chosen_hosts, end_of, recorded_charts, recorded_hosts, replay, run_of,
+};
 
 /// Parses the path of a file that is written beside standard output.
 pub(crate) fn file_parser() -> impl TypedValueParser<Value = PathBuf> {

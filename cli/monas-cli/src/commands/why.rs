@@ -12,7 +12,7 @@ use monas_tape::Recording;
 use monas_terminal::{CommandFailure, CommandOutput, Exit, Format, FormatArgument, failed};
 use serde_json::{Value, json};
 
-use crate::input::{recorded_charts, run_of};
+use crate::input::{check_within, recorded_charts, run_of};
 
 #[derive(Args, Debug)]
 pub(crate) struct WhyArguments {
@@ -55,6 +55,7 @@ pub(crate) fn execute(
     let recording = Recording::open(tape).map_err(failed(format))?;
     let overview = recording.overview().map_err(failed(format))?;
     let is_whole = run_of(tape, &overview).is_ok();
+    check_within("--at", *at, &overview)?;
     let charts = recorded_charts(&recording, format)?;
     let tape = TapeRun::new("", recording, &charts, None);
     let tape = tape.map_err(|error| CommandFailure::failed(format, error))?;

@@ -7,7 +7,7 @@ use std::path::Path;
 use std::path::PathBuf;
 
 use monas::replay::{RecordedPublisher, Replay};
-use monas::{Agent, ConfigurationBundle, HostConfig, Registry, Talws};
+use monas::{Agent, ConfigurationBundle, HostConfig, Registry, Talws, Timestamp};
 #[cfg(feature = "soccer")]
 use monas_match::MatchSource;
 use monas_studio::TapeChart;
@@ -48,6 +48,26 @@ pub(crate) fn run_of(tape: &Path, overview: &TapeOverview) -> Result<RecordedRun
         return Err(format!("{damage}; `monas tape recover` keeps what can be read"));
     }
     complete_run(overview).map_err(|reason| format!("{}: {reason}", tape.display()))
+}
+
+/// The end of the run, if the tape contains it.
+pub(crate) fn end_of(overview: &TapeOverview) -> Option<Timestamp> {
+    let facts = overview.facts.iter().find(|facts| facts.name == monas_recording::END)?;
+    facts.entries.get("nanoseconds")?.parse().ok().map(Timestamp::from_nanos)
+}
+
+/// Refuses a moment after the end of the run, or after the last message if that is later.
+pub(crate) fn check_within(
+    option: &str,
+    seconds: f64,
+    overview: &TapeOverview,
+) -> Result<(), CommandFailure> {
+    let last = end_of(overview).max(overview.span.map(|(_, last)| last)).unwrap_or_default();
+    let last = last.since(Timestamp::ZERO).as_secs_f64();
+    if seconds <= last {
+        return Ok(());
+    }
+    Err(CommandFailure::Usage(format!("{option} is {seconds:.3} s, and the tape ends at {last:.3} s")))
 }
 
 fn complete_run(overview: &TapeOverview) -> Result<RecordedRun, String> {

@@ -90,6 +90,9 @@ fn why_names_the_transitions_and_the_messages_that_their_conditions_read() {
     );
     assert!(not("CONDITION -> nowhere", &[]).err.contains("there is no transition"));
     assert_eq!(monas(&["why", tape, "blue-2", "--at", "1"]).code, Some(2));
+    let late = monas(&["why", tape, "blue-2", "--state", "search", "--at", "17.001"]);
+    assert_eq!(late.code, Some(2));
+    assert!(late.err.contains("--at is 17.001 s, and the tape ends at 17.000 s"), "{}", late.err);
 }
 
 #[test]

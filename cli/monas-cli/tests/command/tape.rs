@@ -58,6 +58,11 @@ fn an_output_that_is_the_tape_and_moments_outside_of_it_are_refused() {
         assert_eq!((to_output.code, to_output.out.as_str()), (Some(2), ""), "{to_output:?}");
         assert!(to_output.err.contains("standard output has the results: name a file"), "{to_output:?}");
     }
+    for command in [&["cut", &tape, "-o", "late.mcap"][..], &["export", &tape]] {
+        let late = monas(&[&["tape"], command, &["--from", "100s"]].concat());
+        assert_eq!(late.code, Some(2), "{late:?}");
+        assert!(late.err.contains("--from is 100.000 s, and the tape ends at 25.000 s"), "{late:?}");
+    }
     let rows = |more: &[&str]| {
         done(&[&["tape", "export", &tape, "--topic", "sim/score", "--format", "csv"], more].concat()).out
     };

@@ -17,7 +17,7 @@ use monas_terminal::{CommandFailure, CommandOutput, Exit, Format, WallClock, fai
 use super::arguments::ReplayArguments;
 #[cfg(unix)]
 use crate::commands::studio;
-use crate::input::{self, chosen_hosts, run_of};
+use crate::input::{self, chosen_hosts, end_of, run_of};
 
 /// The result of a replay.
 struct ReplayOutcome {
@@ -144,12 +144,6 @@ fn play(
         .map_err(|error| CommandFailure::failed(format, error))?;
     let length = end.or(overview.span.map(|(_, last)| last)).unwrap_or_default().since(Timestamp::ZERO);
     Ok(ReplayOutcome { first, tallies, length, took: clock.elapsed() })
-}
-
-/// The end of the run, if the tape contains it.
-fn end_of(overview: &TapeOverview) -> Option<Timestamp> {
-    let facts = overview.facts.iter().find(|facts| facts.name == monas_recording::END)?;
-    facts.entries.get("nanoseconds")?.parse().ok().map(Timestamp::from_nanos)
 }
 
 /// The input of each channel, by the channel's address. The channel is kept, so that its address is

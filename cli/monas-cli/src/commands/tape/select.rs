@@ -5,6 +5,7 @@ use monas_tape::{Channel, RecordedSample, TapeOverview};
 use monas_terminal::CommandFailure;
 
 use super::arguments::MessageSelection;
+use crate::input::check_within;
 
 impl MessageSelection {
     /// Whether messages of a channel are selected.
@@ -26,12 +27,15 @@ impl MessageSelection {
         (self.from.map(moment), self.to.map(moment))
     }
 
-    /// Refuses an empty time span, and topics and hosts that the tape does not have.
+    /// Refuses an empty time span, one after the end, and topics and hosts that the tape does not have.
     pub(crate) fn check(&self, overview: &TapeOverview) -> Result<(), CommandFailure> {
         if let (Some(from), Some(to)) = (self.from, self.to)
             && from >= to
         {
             return Err(CommandFailure::Usage("--from has to be earlier than --to".into()));
+        }
+        if let Some(from) = self.from {
+            check_within("--from", from.as_secs_f64(), overview)?;
         }
         let channels = || overview.channels.iter().map(|counted| &*counted.channel);
         for pattern in &self.topics {

@@ -17,8 +17,8 @@ use yase::expression::{Expression, parse_transition};
 
 use crate::commands::studio::scene;
 use crate::input::{
-    ConfigurationKind, LayerArguments, file_parser, kind_of, layers, recorded_charts, recorded_configuration,
-    run_of,
+    ConfigurationKind, LayerArguments, check_within, file_parser, kind_of, layers, recorded_charts,
+    recorded_configuration, run_of,
 };
 
 /// Arguments of `monas tape what-if`.
@@ -64,11 +64,7 @@ pub(crate) fn execute(
         run.seed().ok_or_else(|| refused("only a run in simulated time can be played again".into()))?;
     let charts = recorded_charts(&recording, format)?;
     let recorded = TapeRun::new("", recording.clone(), &charts, scene()).map_err(failed(format))?;
-    let last = recorded.end_seconds();
-    if arguments.at.as_secs_f64() > last {
-        let at = arguments.at.as_secs_f64();
-        return Err(CommandFailure::Usage(format!("--at is {at:.3} s, and the tape ends at {last:.3} s")));
-    }
+    check_within("--at", arguments.at.as_secs_f64(), &overview)?;
     if arguments.length.is_some_and(|length| length < arguments.at) {
         return Err(CommandFailure::Usage("--for is a time of the match, which is before --at".to_owned()));
     }
