@@ -26,7 +26,7 @@ fn reasons(role: &str) -> Vec<(String, String)> {
 fn bless(role: &str, survivors: &[String]) {
     let known: BTreeMap<String, String> = reasons(role).into_iter().collect();
     let mut text = format!(
-        "# The changes of models/{role}.srm that no scenario notices, in the order of `monas model mutate`, each with the reason why none can.\n"
+        "# The mutants of models/{role}.srm that no scenario detects, in the order of `monas model mutate`, each with the reason why none can.\n"
     );
     for name in survivors {
         let reason = known.get(name).map_or("", String::as_str);
@@ -58,22 +58,22 @@ fn is_well_tested(role: &str, least: usize) {
     let known = reasons(role);
     assert_eq!(survivors, known.iter().map(|(name, _)| name.clone()).collect::<Vec<_>>());
     for (name, reason) in known {
-        assert!(!reason.trim().is_empty(), "no reason says why nothing can notice `{name}`");
+        assert!(!reason.trim().is_empty(), "the list has no reason why no scenario can detect `{name}`");
     }
 }
 
 #[test]
-fn scenarios_notice_changes_of_the_goalie() {
+fn scenarios_detect_mutants_of_the_goalie() {
     is_well_tested("goalie", 150);
 }
 
 #[test]
-fn scenarios_notice_changes_of_the_attacker() {
+fn scenarios_detect_mutants_of_the_attacker() {
     is_well_tested("attacker", 150);
 }
 
 #[test]
-fn scenarios_notice_changes_of_the_extended_attacker() {
+fn scenarios_detect_mutants_of_the_extended_attacker() {
     is_well_tested("extended_attacker", 250);
 }
 
