@@ -11,14 +11,14 @@ use narukom::Blackboard;
 use crate::root;
 
 /// Time between two samples.
-const EVERY: Duration = Duration::from_millis(100);
+const SAMPLE_INTERVAL: Duration = Duration::from_millis(100);
 
 /// Age, after the latency of the camera, from which a ball is no longer known, s: images are 0.1 s
 /// apart.
 const KNOWN_FOR: f64 = 0.15;
 
 /// The index in the world of blue's first attacker, `blue-2`.
-const WATCHED: usize = 1;
+const WATCHED_ROBOT: usize = 1;
 
 /// The settings of a match with today's ball and goals.
 pub const TODAY: [&str; 2] = ["match.objects=today", "simulator.physics.ball_radius=0.05"];
@@ -88,13 +88,13 @@ impl BallKnowledge {
         let board = running.simulation().and_then(|simulation| simulation.hub("blue-2"));
         let mut board = board.ok_or("no robot blue-2")?.blackboard("compared with the truth");
         while running.now() < length {
-            running.advance(running.now() + EVERY).map_err(|error| error.to_string())?;
+            running.advance(running.now() + SAMPLE_INTERVAL).map_err(|error| error.to_string())?;
             let Some(now) = running.simulation().map(|simulation| simulation.now()) else { break };
             board.process_messages(now);
             running.pitch().with_world(|world| self.sample(world, &board));
         }
         let kicks =
-            running.pitch().with_world(|world| world.statistics().robot(WATCHED).map(|it| it.strikes));
+            running.pitch().with_world(|world| world.statistics().robot(WATCHED_ROBOT).map(|it| it.strikes));
         self.kicks += kicks.unwrap_or_default();
         Ok(())
     }
@@ -115,7 +115,7 @@ impl BallKnowledge {
     }
 
     fn sample(&mut self, world: &SimulatedWorld, board: &Blackboard) {
-        let state = &world.robots()[WATCHED];
+        let state = &world.robots()[WATCHED_ROBOT];
         if world.referee().state() != GameState::Playing || !state.phase.is_upright() || !state.on_field {
             return;
         }
@@ -134,7 +134,7 @@ impl BallKnowledge {
         let ball = board
             .read(topics::BALL)
             .filter(|ball| ball.found && ball.age < KNOWN_FOR + world.physics().camera_latency);
-        if !is_in_view(world, WATCHED) {
+        if !is_in_view(world, WATCHED_ROBOT) {
             return;
         }
         self.in_view += 1;
@@ -151,13 +151,13 @@ impl BallKnowledge {
 /// robot.
 fn is_in_view(world: &SimulatedWorld, robot: usize) -> bool {
     /// Least distance of the ball from the edges of the image, rad.
-    const MARGIN: f64 = 0.08;
+    const IMAGE_MARGIN: f64 = 0.08;
     let (me, physics) = (&world.robots()[robot], world.physics());
     let ball = me.pose.to_own(world.ball().position);
     let distance = ball.norm();
     let bearing = libm::atan2(ball.y, ball.x);
     let down = libm::atan2(physics.camera_height - physics.ball_radius, distance);
-    let is_within = |angle: f64, view: f64| angle.abs() < view / 2.0 - MARGIN;
+    let is_within = |angle: f64, view: f64| angle.abs() < view / 2.0 - IMAGE_MARGIN;
     let tilts = [0.0, physics.camera_tilt];
     let shows = tilts.map(|tilt| is_within(down - me.head_pitch - tilt, physics.camera_view_vertical));
     let is_hidden = world.robots().iter().enumerate().any(|(index, other)| {

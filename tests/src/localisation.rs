@@ -11,12 +11,12 @@ use narukom::Timestamp;
 use crate::{Variant, root};
 
 /// How often poses are compared with the truth.
-const EVERY: Duration = Duration::from_millis(100);
+const COMPARISON_INTERVAL: Duration = Duration::from_millis(100);
 /// Errors below which a robot knows where it is: metres and radians.
-const KNOWN: (f64, f64) = (0.5, 0.35);
+const KNOWN_POSE_ERROR: (f64, f64) = (0.5, 0.35);
 /// How long a robot that was carried away is watched, and the play between two of them, seconds.
-const WATCHED: f64 = 30.0;
-const BETWEEN: f64 = 5.0;
+const WATCHED_TIME: f64 = 30.0;
+const PLAY_TIME: f64 = 5.0;
 
 /// Differences between estimated and true poses while the game is played.
 #[derive(Clone, PartialEq, Debug, Default)]
@@ -71,7 +71,7 @@ impl PoseMatch {
     }
 
     fn advance(&mut self) -> Result<(), String> {
-        self.now += EVERY;
+        self.now += COMPARISON_INTERVAL;
         self.running.advance(self.now).map_err(|error| error.to_string())
     }
 
@@ -140,9 +140,9 @@ pub fn kidnap(variant: &Variant, seed: u64, length: Duration) -> Result<Kidnappi
     let mut rest = 0.0;
     while game.now < length {
         game.advance()?;
-        rest += EVERY.as_secs_f64();
+        rest += COMPARISON_INTERVAL.as_secs_f64();
         let plays = game.error(victim).is_some();
-        if rest < BETWEEN || !plays {
+        if rest < PLAY_TIME || !plays {
             victim = if plays { victim } else { (victim + 1) % game.robots() };
             continue;
         }
@@ -159,7 +159,7 @@ pub fn kidnap(variant: &Variant, seed: u64, length: Duration) -> Result<Kidnappi
             .change(|world| world.place_robot(victim, place))
             .map_err(|error| error.to_string())?;
         match recovery(&mut game, victim)? {
-            Some(after) if after < WATCHED => result.recoveries.push(after),
+            Some(after) if after < WATCHED_TIME => result.recoveries.push(after),
             Some(_) => result.lost += 1,
             None => {}
         }
@@ -173,11 +173,11 @@ pub fn kidnap(variant: &Variant, seed: u64, length: Duration) -> Result<Kidnappi
 fn recovery(game: &mut PoseMatch, robot: usize) -> Result<Option<f64>, String> {
     let mut known_since = None;
     let mut after = 0.0;
-    while after < WATCHED {
+    while after < WATCHED_TIME {
         game.advance()?;
-        after += EVERY.as_secs_f64();
+        after += COMPARISON_INTERVAL.as_secs_f64();
         let Some((place, turn)) = game.error(robot) else { return Ok(None) };
-        if place > KNOWN.0 || turn > KNOWN.1 {
+        if place > KNOWN_POSE_ERROR.0 || turn > KNOWN_POSE_ERROR.1 {
             known_since = None;
             continue;
         }
@@ -186,5 +186,5 @@ fn recovery(game: &mut PoseMatch, robot: usize) -> Result<Option<f64>, String> {
             return Ok(Some(since));
         }
     }
-    Ok(Some(WATCHED))
+    Ok(Some(WATCHED_TIME))
 }

@@ -10,9 +10,9 @@ use monas_sim::{EventKind, SimulatedWorld};
 use yase::NodeKind;
 
 /// The state in which a robot passes.
-const PASSING: &str = "passBall";
+const PASSING_STATE: &str = "passBall";
 
-/// A kick later than this after the entry of [`PASSING`] is not its kick, s.
+/// A kick later than this after the entry of [`PASSING_STATE`] is not its kick, s.
 const KICK_WITHIN: f64 = 3.0;
 
 /// Passes of a team.
@@ -91,7 +91,7 @@ impl StateLog {
         step.record.exits.iter().filter(basic).for_each(|node| log.leave(node.0 as usize, now));
         for node in step.record.entries.iter().filter(basic) {
             let name = &statechart.node(*node).name;
-            if name == PASSING {
+            if name == PASSING_STATE {
                 self.passing.push((step.host.to_owned(), now));
             }
             log.enter(node.0 as usize, name, now);

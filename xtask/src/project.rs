@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 
 /// Files that a user adds to the folders.
-const DROPPED: [(&str, &str); 5] = [
+const ADDED_FILES: [(&str, &str); 5] = [
     (
         "messages/pins.proto",
         "syntax = \"proto3\";\n\npackage circus;\n\nmessage Pins {\n  uint32 count = 1;\n  uint32 held = 2;\n}\n",
@@ -80,7 +80,7 @@ const NAMING: (&str, &str) = (
 
 /// Removed items that a generated crate refers to: the file, the original text, its replacement,
 /// and the errors of the compiler.
-const TAKEN: [(&str, &str, &str, &[&str]); 2] = [
+const REMOVED_ITEMS: [(&str, &str, &str, &[&str]); 2] = [
     (
         "activities/throw.rs",
         "fn throw",
@@ -100,7 +100,7 @@ const TAKEN: [(&str, &str, &str, &[&str]); 2] = [
 
 /// A unit test of an activity that is made to fail: the file, the original text, its replacement,
 /// and the errors of the test.
-const FAILING: (&str, &str, &str, &[&str]) =
+const FAILING_TEST: (&str, &str, &str, &[&str]) =
     ("activities/greet.rs", "number, number)", "number, number + 1)", &["test failed", "-p activities"]);
 
 /// Files that a project without matches does not need.
@@ -108,7 +108,7 @@ const LEFT_OUT: [&str; 6] =
     ["monas-eval", "monas-match", "monas-sim", "monas-soccer", "nalgebra", "rapier2d"];
 
 /// The most crates that the first test of a project needs, its own included.
-const CRATES: usize = 230;
+const MAX_CRATES: usize = 230;
 
 /// A configuration with a module, whose file is filled in. It is separate from the project's
 /// configuration, whose test needs no module.
@@ -116,10 +116,10 @@ const WITH_MODULE: &str =
     "<module>{file}</module>\n<agent frequency=\"10\"><name>Winker</name><activity>Wink</activity></agent>\n";
 
 /// The body of the module's activity before the change.
-const IDLE: &str = "        Ok(Progress::Done)\n";
+const ACTIVITY_BODY: &str = "        Ok(Progress::Done)\n";
 
 /// The model with a renamed state.
-const RENAMED: &str = "Role: juggler\nLiveness:\njuggler = (Juggle . Fling)~\nTransitions:\nJuggle -> Fling : [pause] / StartTimeout(pause, 100ms)\nStates:\nFling : activity = Throw\n";
+const RENAMED_MODEL: &str = "Role: juggler\nLiveness:\njuggler = (Juggle . Fling)~\nTransitions:\nJuggle -> Fling : [pause] / StartTimeout(pause, 100ms)\nStates:\nFling : activity = Throw\n";
 
 /// Creates a project and checks all steps.
 pub(crate) fn run(root: &Path) -> Result<ExitCode, Box<dyn Error>> {
@@ -149,11 +149,11 @@ pub(crate) fn run(root: &Path) -> Result<ExitCode, Box<dyn Error>> {
     };
     done(&mut monas(&folder, &["new", "my-team"]))?;
     let crates = first_test(&mut cargo(&team, &["test", "--offline", "--verbose"]))?;
-    expect_refusal_after_edit(&team, FAILING, &mut cargo(&team, &["test", "--offline"]))?;
+    expect_refusal_after_edit(&team, FAILING_TEST, &mut cargo(&team, &["test", "--offline"]))?;
     let said = done(&mut cargo(&team, &["run", "--offline", "--quiet", "--", "run", "--for", "2s"]))?;
     expect(&said, "hello for the 1. time")?;
     done(&mut monas(&team, &["new", "activity", "Juggle"]))?;
-    for (file, text) in DROPPED {
+    for (file, text) in ADDED_FILES {
         fs::write(team.join(file), text)?;
     }
     done(&mut cargo(&team, &["test", "--offline"]))?;
@@ -168,10 +168,10 @@ pub(crate) fn run(root: &Path) -> Result<ExitCode, Box<dyn Error>> {
     let generated = ["run", "--offline", "--quiet", "--", "run", "config/generated.xml", "--for", "1s"];
     expect(&done(&mut cargo(&team, &generated))?, "pins: 6")?;
     let build = ["test", "--offline", "--no-run"];
-    for taken in TAKEN {
+    for taken in REMOVED_ITEMS {
         expect_refusal_after_edit(&team, taken, &mut cargo(&team, &build))?;
     }
-    fs::write(team.join("models/juggler.srm"), RENAMED)?;
+    fs::write(team.join("models/juggler.srm"), RENAMED_MODEL)?;
     done(&mut cargo(&team, &generate))?;
     let error = refused(&mut cargo(&team, &build))?;
     ["error[E0599]: no variant", "`Throw`", NAMING.0].iter().try_for_each(|part| expect(&error, part))?;
@@ -215,8 +215,8 @@ fn first_test(test: &mut Command) -> Result<usize, Box<dyn Error>> {
     let needless = |line: &&&str| line.split(' ').next().is_some_and(|name| LEFT_OUT.contains(&name));
     match crates.iter().find(needless) {
         Some(name) => Err(format!("a project without matches needs {name}").into()),
-        None if crates.len() > CRATES => {
-            Err(format!("a new project needs {} crates, more than {CRATES}", crates.len()).into())
+        None if crates.len() > MAX_CRATES => {
+            Err(format!("a new project needs {} crates, more than {MAX_CRATES}", crates.len()).into())
         }
         None => Ok(crates.len()),
     }
@@ -232,8 +232,8 @@ fn module(
     let library = team.join("modules/wink/lib.rs");
     let idle = fs::read_to_string(&library)?;
     for times in ["once", "twice"] {
-        let wink = format!("        println!(\"wink {times}\");\n{IDLE}");
-        fs::write(&library, idle.replacen(IDLE, &wink, 1))?;
+        let wink = format!("        println!(\"wink {times}\");\n{ACTIVITY_BODY}");
+        fs::write(&library, idle.replacen(ACTIVITY_BODY, &wink, 1))?;
         let own = ["run", "--offline", "--quiet", "--", "module", "build", "wink"];
         let file = done(&mut cargo(team, &own))?;
         fs::write(team.join("winker.xml"), WITH_MODULE.replace("{file}", file.trim()))?;

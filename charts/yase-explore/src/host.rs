@@ -13,10 +13,10 @@ use super::constraint_cache::ConstraintCache;
 use super::{ConditionConstraint, WriteEffects};
 
 /// The blackboard of conditions that only the caller evaluates.
-const BESIDE: ScopeId = ScopeId(u32::MAX);
+const CALLER_SCOPE: ScopeId = ScopeId(u32::MAX);
 
 /// The blackboard of the chart's root.
-const ROOT: ScopeId = ScopeId(0);
+const ROOT_SCOPE: ScopeId = ScopeId(0);
 
 /// A host that chooses the values of conditions.
 pub(crate) struct ChoosingHost<'s, 'a> {
@@ -171,8 +171,8 @@ impl Decisions<'_, '_> {
     fn is_shared(&self, board: ScopeId, fact: ScriptId, region: ScopeId) -> bool {
         match (board, region) {
             _ if board == region => true,
-            (ROOT, BESIDE) => self.delivered.contains(&ROOT),
-            (_, BESIDE) => self.is_newest(board, fact) && self.is_unwritten(ROOT, fact),
+            (ROOT_SCOPE, CALLER_SCOPE) => self.delivered.contains(&ROOT_SCOPE),
+            (_, CALLER_SCOPE) => self.is_newest(board, fact) && self.is_unwritten(ROOT_SCOPE, fact),
             _ => self.is_newest(board, fact) && self.is_newest(region, fact),
         }
     }
@@ -197,8 +197,8 @@ impl Decisions<'_, '_> {
     }
 
     fn decide_after_step(&mut self, script: ScriptId) -> bool {
-        let value = self.choose_among(BESIDE, script);
-        self.facts.push((BESIDE, script, value));
+        let value = self.choose_among(CALLER_SCOPE, script);
+        self.facts.push((CALLER_SCOPE, script, value));
         value
     }
 

@@ -31,7 +31,7 @@ use yase::statechart::{NodeId, TransitionId};
 use yase::{Machine, Status};
 
 /// Maximum number of alternatives of one step.
-const WAYS: usize = 4_096;
+const MAX_ALTERNATIVES: usize = 4_096;
 
 /// Options and observations of a labelled exploration.
 pub struct StepLabeler<'w> {
@@ -293,7 +293,7 @@ impl LabelledSearch<'_, '_, '_> {
         let mut plans = vec![LabelledChoicePlan::default()];
         let mut tried = 0;
         while let Some(plan) = plans.pop() {
-            if tried == WAYS {
+            if tried == MAX_ALTERNATIVES {
                 self.found.stop = Some(ExplorationStop::Alternatives);
                 return;
             }

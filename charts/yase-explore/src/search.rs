@@ -16,7 +16,7 @@ use yase::{Chooser, Machine, MachineError, Status};
 use yase::{Host, Outcome};
 
 /// Maximum number of alternatives of one step.
-const WAYS: usize = 2_048;
+const MAX_ALTERNATIVES: usize = 2_048;
 
 /// Explores a chart in an environment, within limits; a number is one of states.
 pub fn explore<'l>(
@@ -160,7 +160,7 @@ impl StateSpaceSearch<'_, '_> {
         let mut plans = vec![ChoicePlan::default()];
         let mut tried = 0;
         while let Some(plan) = plans.pop() {
-            if tried == WAYS {
+            if tried == MAX_ALTERNATIVES {
                 self.found.stop = Some(ExplorationStop::Alternatives);
                 return;
             }

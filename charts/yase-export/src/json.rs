@@ -5,7 +5,7 @@ use std::fmt::Write;
 use super::outline::IndentedText;
 
 /// Maximum length of a value on one line.
-const LINE: usize = 110;
+const MAX_LINE_LENGTH: usize = 110;
 
 /// A small value.
 #[derive(Clone, PartialEq, Debug)]
@@ -129,12 +129,12 @@ impl JsonWriter {
         let mut line = String::new();
         value.in_one_line(&mut line);
         match value {
-            JsonValue::List(items) if line.len() > LINE => {
+            JsonValue::List(items) if line.len() > MAX_LINE_LENGTH => {
                 self.lines.text.push('[');
                 self.parts(items, |_, _| {}, |item| item);
                 self.lines.text.push(']');
             }
-            JsonValue::Object(entries) if line.len() > LINE => {
+            JsonValue::Object(entries) if line.len() > MAX_LINE_LENGTH => {
                 self.lines.text.push('{');
                 let key = |(key, _): &(String, JsonValue), out: &mut String| {
                     quote(key, out);

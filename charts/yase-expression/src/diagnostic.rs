@@ -51,13 +51,13 @@ pub struct Source {
     /// The first byte of each line, determined once: a text may have a finding in every line. The
     /// first line begins after a byte order mark, which editors do not show.
     line_starts: OnceLock<Box<[usize]>>,
-    /// The number of characters before each block of [`BLOCK`] bytes: one line may have many
+    /// The number of characters before each block of [`BLOCK_SIZE`] bytes: one line may have many
     /// findings.
     characters: OnceLock<Box<[usize]>>,
 }
 
 /// Characters are counted by blocks of so many bytes.
-const BLOCK: usize = 256;
+const BLOCK_SIZE: usize = 256;
 
 impl Source {
     /// A text and its name, ready to be shared.
@@ -95,14 +95,14 @@ impl Source {
         let text = self.text.as_bytes();
         let blocks = self.characters.get_or_init(|| {
             let mut before = 0;
-            let ends = text.chunks(BLOCK).map(|block| {
+            let ends = text.chunks(BLOCK_SIZE).map(|block| {
                 before += begins(block);
                 before
             });
             std::iter::once(0).chain(ends).collect()
         });
-        let block = byte / BLOCK;
-        blocks[block] + begins(&text[block * BLOCK..byte])
+        let block = byte / BLOCK_SIZE;
+        blocks[block] + begins(&text[block * BLOCK_SIZE..byte])
     }
 
     /// The number, from 1, and the first byte of the line that contains a byte.
@@ -248,11 +248,11 @@ pub struct Suggestions {
 }
 
 /// The number of comparisons for the suggestions about one text.
-const COMPARISONS: usize = 300_000;
+const MAX_COMPARISONS: usize = 300_000;
 
 impl Default for Suggestions {
     fn default() -> Suggestions {
-        Suggestions { left: Cell::new(COMPARISONS) }
+        Suggestions { left: Cell::new(MAX_COMPARISONS) }
     }
 }
 
@@ -321,7 +321,7 @@ mod tests {
     fn suggestions_end_with_their_comparisons() {
         let suggestions = Suggestions::default();
         assert_eq!(suggestions.nearest("Vsion", ["Vision", "Sensors"]), Some("Vision"));
-        assert_eq!(suggestions.nearest("x", std::iter::repeat_n("other", COMPARISONS)), None);
+        assert_eq!(suggestions.nearest("x", std::iter::repeat_n("other", MAX_COMPARISONS)), None);
         assert_eq!(suggestions.nearest("Vsion", ["Vision", "Sensors"]), None);
     }
 

@@ -51,7 +51,7 @@ impl Histogram {
         let seen = Seen { case, chart: &case.chart, log, lines: lines(log), nodes };
         self.count_chart(&seen);
         self.count_reading(case);
-        for (row, occurred) in SEEN {
+        for (row, occurred) in DERIVED_ROWS {
             self.add(row, occurred(&seen));
         }
     }
@@ -205,7 +205,7 @@ impl Seen<'_> {
 type Row = (&'static str, fn(&Seen<'_>) -> bool);
 
 /// Rows derived from lines, or from chart and lines together.
-const SEEN: [Row; 88] = [
+const DERIVED_ROWS: [Row; 88] = [
     ("R1 a chart rests at START", |it| it.says("  waits at")),
     ("R2 an AND is left from inside", |it| {
         it.any_exit(|line, node| {

@@ -9,10 +9,10 @@ pub(crate) struct ElementGrammar {
 }
 
 /// Executable contents.
-const CONTENTS: &[&str] = &["raise", "if", "foreach", "log", "assign", "script", "send", "cancel"];
+const EXECUTABLE_CONTENT: &[&str] = &["raise", "if", "foreach", "log", "assign", "script", "send", "cancel"];
 const BRANCHES: &[&str] =
     &["raise", "if", "foreach", "log", "assign", "script", "send", "cancel", "elseif", "else"];
-const ANY: &[&str] = &[];
+const NO_ATTRIBUTES: &[&str] = &[];
 
 /// All elements; `<content>`, `<data>` and `<assign>` have arbitrary children.
 pub(crate) const ELEMENTS: &[ElementGrammar] = &[
@@ -49,7 +49,7 @@ pub(crate) const ELEMENTS: &[ElementGrammar] = &[
         name: "transition",
         attributes: &["event", "cond", "target", "type"],
         required: &[],
-        children: CONTENTS,
+        children: EXECUTABLE_CONTENT,
     },
     ElementGrammar { name: "initial", attributes: &[], required: &[], children: &["transition"] },
     ElementGrammar {
@@ -58,37 +58,42 @@ pub(crate) const ELEMENTS: &[ElementGrammar] = &[
         required: &[],
         children: &["onentry", "onexit", "donedata"],
     },
-    ElementGrammar { name: "onentry", attributes: &[], required: &[], children: CONTENTS },
-    ElementGrammar { name: "onexit", attributes: &[], required: &[], children: CONTENTS },
+    ElementGrammar { name: "onentry", attributes: &[], required: &[], children: EXECUTABLE_CONTENT },
+    ElementGrammar { name: "onexit", attributes: &[], required: &[], children: EXECUTABLE_CONTENT },
     ElementGrammar { name: "history", attributes: &["id", "type"], required: &[], children: &["transition"] },
-    ElementGrammar { name: "raise", attributes: &["event"], required: &["event"], children: ANY },
+    ElementGrammar { name: "raise", attributes: &["event"], required: &["event"], children: NO_ATTRIBUTES },
     ElementGrammar { name: "if", attributes: &["cond"], required: &["cond"], children: BRANCHES },
-    ElementGrammar { name: "elseif", attributes: &["cond"], required: &["cond"], children: ANY },
-    ElementGrammar { name: "else", attributes: &[], required: &[], children: ANY },
+    ElementGrammar { name: "elseif", attributes: &["cond"], required: &["cond"], children: NO_ATTRIBUTES },
+    ElementGrammar { name: "else", attributes: &[], required: &[], children: NO_ATTRIBUTES },
     ElementGrammar {
         name: "foreach",
         attributes: &["array", "item", "index"],
         required: &["array", "item"],
-        children: CONTENTS,
+        children: EXECUTABLE_CONTENT,
     },
-    ElementGrammar { name: "log", attributes: &["label", "expr"], required: &[], children: ANY },
+    ElementGrammar { name: "log", attributes: &["label", "expr"], required: &[], children: NO_ATTRIBUTES },
     ElementGrammar { name: "datamodel", attributes: &[], required: &[], children: &["data"] },
-    ElementGrammar { name: "data", attributes: &["id", "src", "expr"], required: &["id"], children: ANY },
+    ElementGrammar {
+        name: "data",
+        attributes: &["id", "src", "expr"],
+        required: &["id"],
+        children: NO_ATTRIBUTES,
+    },
     ElementGrammar {
         name: "assign",
         attributes: &["location", "expr"],
         required: &["location"],
-        children: ANY,
+        children: NO_ATTRIBUTES,
     },
     ElementGrammar { name: "donedata", attributes: &[], required: &[], children: &["content", "param"] },
-    ElementGrammar { name: "content", attributes: &["expr"], required: &[], children: ANY },
+    ElementGrammar { name: "content", attributes: &["expr"], required: &[], children: NO_ATTRIBUTES },
     ElementGrammar {
         name: "param",
         attributes: &["name", "expr", "location"],
         required: &["name"],
-        children: ANY,
+        children: NO_ATTRIBUTES,
     },
-    ElementGrammar { name: "script", attributes: &["src"], required: &[], children: ANY },
+    ElementGrammar { name: "script", attributes: &["src"], required: &[], children: NO_ATTRIBUTES },
     ElementGrammar {
         name: "send",
         attributes: &[
@@ -107,18 +112,23 @@ pub(crate) const ELEMENTS: &[ElementGrammar] = &[
         required: &[],
         children: &["content", "param"],
     },
-    ElementGrammar { name: "cancel", attributes: &["sendid", "sendidexpr"], required: &[], children: ANY },
+    ElementGrammar {
+        name: "cancel",
+        attributes: &["sendid", "sendidexpr"],
+        required: &[],
+        children: NO_ATTRIBUTES,
+    },
     ElementGrammar {
         name: "invoke",
         attributes: &["type", "typeexpr", "src", "srcexpr", "id", "idlocation", "namelist", "autoforward"],
         required: &[],
         children: &["param", "finalize", "content"],
     },
-    ElementGrammar { name: "finalize", attributes: &[], required: &[], children: CONTENTS },
+    ElementGrammar { name: "finalize", attributes: &[], required: &[], children: EXECUTABLE_CONTENT },
 ];
 
 /// Elements with arbitrary children.
-pub(crate) const OPEN: [&str; 3] = ["content", "data", "assign"];
+pub(crate) const ELEMENTS_WITH_ANY_CONTENT: [&str; 3] = ["content", "data", "assign"];
 
 /// The element with this name.
 pub(crate) fn element(name: &str) -> Option<&'static ElementGrammar> {

@@ -6,20 +6,20 @@
 /// The first two words are stored inline: most charts have no more than 128 nodes.
 #[derive(Clone, PartialEq, Eq, Debug, Default)]
 pub(crate) struct BitSet {
-    low: [u64; INLINE],
+    low: [u64; INLINE_WORDS],
     rest: Box<[u64]>,
 }
 
 const BITS: usize = u64::BITS as usize;
 
 /// The number of words stored inline.
-const INLINE: usize = 2;
+const INLINE_WORDS: usize = 2;
 
 impl BitSet {
     /// The empty set of numbers below `capacity`.
     pub(crate) fn new(capacity: usize) -> BitSet {
-        let rest = capacity.div_ceil(BITS).saturating_sub(INLINE);
-        BitSet { low: [0; INLINE], rest: vec![0; rest].into_boxed_slice() }
+        let rest = capacity.div_ceil(BITS).saturating_sub(INLINE_WORDS);
+        BitSet { low: [0; INLINE_WORDS], rest: vec![0; rest].into_boxed_slice() }
     }
 
     #[inline]
@@ -43,7 +43,7 @@ impl BitSet {
 
     #[inline]
     pub(crate) fn clear(&mut self) {
-        self.low = [0; INLINE];
+        self.low = [0; INLINE_WORDS];
         // avoid a call for an empty slice
         if !self.rest.is_empty() {
             self.rest.fill(0);
@@ -53,7 +53,7 @@ impl BitSet {
     /// Whether there is no member.
     #[inline]
     pub(crate) fn is_empty(&self) -> bool {
-        self.low == [0; INLINE] && self.rest.iter().all(|&word| word == 0)
+        self.low == [0; INLINE_WORDS] && self.rest.iter().all(|&word| word == 0)
     }
 
     /// Whether the sets have a member in common.
@@ -66,7 +66,7 @@ impl BitSet {
     /// The number of words.
     #[inline]
     pub(crate) fn word_count(&self) -> usize {
-        INLINE + self.rest.len()
+        INLINE_WORDS + self.rest.len()
     }
 
     /// The members from `64 * index` on, as the bits of a word.
@@ -74,7 +74,7 @@ impl BitSet {
     pub(crate) fn word(&self, index: usize) -> u64 {
         match self.low.get(index) {
             Some(&word) => word,
-            None => self.rest.get(index - INLINE).copied().unwrap_or(0),
+            None => self.rest.get(index - INLINE_WORDS).copied().unwrap_or(0),
         }
     }
 
@@ -82,7 +82,7 @@ impl BitSet {
     fn word_mut(&mut self, index: usize) -> Option<&mut u64> {
         match self.low.get_mut(index) {
             Some(word) => Some(word),
-            None => self.rest.get_mut(index - INLINE),
+            None => self.rest.get_mut(index - INLINE_WORDS),
         }
     }
 

@@ -9,13 +9,14 @@ use std::process::Command;
 use monas_project::{Project, project_program};
 
 /// Commands that need no activities and are executed directly.
-const OWN: [&str; 9] = ["new", "completions", "explain", "man", "help", "--help", "-h", "--version", "-V"];
+const BUILT_IN_COMMANDS: [&str; 9] =
+    ["new", "completions", "explain", "man", "help", "--help", "-h", "--version", "-V"];
 
 /// The command to run instead of this one, if the folder is in a project and this is not the
 /// project's program.
 fn project_command(arguments: &[OsString], here: &Path, program: &Path) -> Option<Command> {
     let first = command_word(arguments)?;
-    if OWN.contains(&first.as_str()) {
+    if BUILT_IN_COMMANDS.contains(&first.as_str()) {
         return None;
     }
     let (project, own) = project_program(here)?;

@@ -8,9 +8,9 @@ use crate::remote::{RemoteError, RemoteReply, task};
 use crate::robot::Robot;
 
 /// Exit codes of the tasks in `robot.sh`.
-const DIFFERENT: i32 = 21;
+const EXIT_DIFFERENT: i32 = 21;
 const NO_START: i32 = 22;
-const BACK: i32 = 23;
+const EXIT_ROLLED_BACK: i32 = 23;
 const NOTHING_BACK: i32 = 24;
 
 /// The releases of one robot.
@@ -107,7 +107,7 @@ impl<'r> Deployment<'r> {
         task(robot, &["receive", &release.name], Some(&input)).map_err(|error| self.failure(error))?;
         let checked = task(robot, &["check", &release.name, &release.program], None);
         checked.map(drop).map_err(|error| match error {
-            RemoteError::Task(DIFFERENT, output) => self.failed(&format!(
+            RemoteError::Task(EXIT_DIFFERENT, output) => self.failed(&format!(
                 "the copy differs from the release and is not used: {output}"
             )),
             RemoteError::Task(NO_START, output) => {
@@ -126,7 +126,7 @@ impl<'r> Deployment<'r> {
         let (unit, settle) = (format!("monas-{}", robot.name), robot.settle.as_secs().max(1).to_string());
         let reply = task(robot, &["run", release, &unit, &robot.service, &settle], None);
         let reply = reply.map_err(|error| match error {
-            RemoteError::Task(BACK, output) => {
+            RemoteError::Task(EXIT_ROLLED_BACK, output) => {
                 self.failed(&format!("release {release} did not keep running for {settle} s: the previous one runs again. Its last output: {output}"))
             }
             RemoteError::Task(NOTHING_BACK, output) => {

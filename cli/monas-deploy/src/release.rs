@@ -13,7 +13,7 @@ use crate::robot::{KeptRecordings, Robot};
 use crate::shell::quoted;
 
 /// The hashes of all other files, in the format of `sha256sum -c`.
-const SUMS: &str = "SHA256SUMS";
+const HASH_FILE: &str = "SHA256SUMS";
 
 /// The files of a release, by path.
 pub struct Release {
@@ -52,7 +52,7 @@ impl Release {
         files.insert("start".into(), ReleaseFile { content: start.into_bytes(), is_program: true });
         let sums = sums(&files);
         let digest = Sha256::digest(&sums);
-        files.insert(SUMS.into(), plain(sums.into_bytes()));
+        files.insert(HASH_FILE.into(), plain(sums.into_bytes()));
         Ok(Release { name: hexadecimal(&digest[..8]), program: name, files })
     }
 
@@ -165,7 +165,7 @@ mod tests {
         fs::write(folder.path().join("agents.xml"), "<agent><name>A</name></agent>").unwrap();
         let robot = robot(folder.path());
         let release = Release::gather(&robot, &program).unwrap();
-        assert_eq!(release.paths().collect::<Vec<_>>(), [SUMS, "agents.xml", "bin/team", "start"]);
+        assert_eq!(release.paths().collect::<Vec<_>>(), [HASH_FILE, "agents.xml", "bin/team", "start"]);
         assert_eq!(release.name, Release::gather(&robot, &program).unwrap().name);
         fs::write(&program, "another").unwrap();
         assert_ne!(release.name, Release::gather(&robot, &program).unwrap().name);

@@ -11,7 +11,7 @@ use crate::shell::quoted;
 const SCRIPT: &str = include_str!("robot.sh");
 
 /// The exit code of `ssh` if it cannot connect.
-const UNREACHED: i32 = 255;
+const SSH_FAILED: i32 = 255;
 
 /// Why a task failed.
 #[derive(Debug)]
@@ -58,7 +58,7 @@ pub(crate) fn task(
     let error = String::from_utf8_lossy(&output.stderr).trim_end().to_owned();
     match output.status.code() {
         Some(0) => Ok(RemoteReply(String::from_utf8_lossy(&output.stdout).into_owned())),
-        Some(UNREACHED) => Err(RemoteError::Unreachable(error)),
+        Some(SSH_FAILED) => Err(RemoteError::Unreachable(error)),
         code => Err(RemoteError::Task(code.unwrap_or(-1), error)),
     }
 }

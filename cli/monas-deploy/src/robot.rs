@@ -8,10 +8,10 @@ use yase::Diagnostic;
 use yase::diagnostic::nearest;
 
 /// How long a release must keep running to be accepted, if the file does not say.
-const SETTLE: &str = "3s";
+const DEFAULT_ACCEPTANCE_TIME: &str = "3s";
 
 /// How many recordings are kept, and how many megabytes of them, if the file does not say.
-const KEEP: &str = "20";
+const DEFAULT_KEPT_RECORDINGS: &str = "20";
 const KEEP_MB: &str = "4000";
 
 /// A robot in the file of robots.
@@ -78,7 +78,7 @@ pub fn robots_grammar() -> Grammar {
         )
         .attribute(
             AttributeRule::new("settle", seconds, "how long a release must keep running to be accepted")
-                .or(SETTLE),
+                .or(DEFAULT_ACCEPTANCE_TIME),
         )
         .attribute(
             AttributeRule::new(
@@ -90,7 +90,7 @@ pub fn robots_grammar() -> Grammar {
         )
         .attribute(
             AttributeRule::new("keep", Kind::whole_in(1, 1_000_000), "the most recordings that are kept")
-                .or(KEEP),
+                .or(DEFAULT_KEPT_RECORDINGS),
         )
         .attribute(
             AttributeRule::new(
@@ -168,8 +168,10 @@ fn entry(path: &Path, robot: &Element) -> Result<Robot, Box<Diagnostic>> {
         let hint = "`record=\"1\"` records each run in `recordings`, outside of releases";
         return Err(Box::new(wrong.with_hint(hint)));
     }
-    let recordings = is_recorded
-        .then(|| KeptRecordings { count: text("keep", KEEP), megabytes: text("keep_mb", KEEP_MB) });
+    let recordings = is_recorded.then(|| KeptRecordings {
+        count: text("keep", DEFAULT_KEPT_RECORDINGS),
+        megabytes: text("keep_mb", KEEP_MB),
+    });
     let located = |named: &str| config::locate(path, named).unwrap_or_else(|_| PathBuf::from(named));
     Ok(Robot {
         name: text("name", ""),
@@ -181,7 +183,7 @@ fn entry(path: &Path, robot: &Element) -> Result<Robot, Box<Diagnostic>> {
         arguments,
         folder: text("folder", "monas"),
         service: text("service", "auto"),
-        settle: config::duration(&text("settle", SETTLE)).unwrap_or(Duration::from_secs(3)),
+        settle: config::duration(&text("settle", DEFAULT_ACCEPTANCE_TIME)).unwrap_or(Duration::from_secs(3)),
         recordings,
     })
 }

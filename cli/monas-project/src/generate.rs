@@ -16,7 +16,7 @@ use monas::{Registry, config, generated};
 use yase::{Diagnostic, Statechart};
 
 use crate::error::{Error, ErrorKind};
-use crate::new_project::TAKEN;
+use crate::new_project::RESERVED_NAMES;
 use crate::project::Project;
 
 /// A generated crate.
@@ -106,7 +106,9 @@ fn crate_name(folder: &Path, project: &Project) -> Result<String, Error> {
         return refused(format!("`{name}` cannot be the name of a crate"), hint);
     }
     let is_same = |other: &str| other.replace('-', "_") == name;
-    if TAKEN.into_iter().any(is_same) || project.team_package().is_some_and(|package| is_same(&package)) {
+    if RESERVED_NAMES.into_iter().any(is_same)
+        || project.team_package().is_some_and(|package| is_same(&package))
+    {
         let message = format!("`{name}` is the name of another crate");
         return refused(message, &format!("name the folder otherwise: --to statecharts/{name}_chart"));
     }

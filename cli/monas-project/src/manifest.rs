@@ -1,13 +1,15 @@
 //! Edits a Cargo.toml as text, so that comments and layout are kept.
 
 /// The first and last line of a generated block in a Cargo.toml.
-const BEGIN: &str = "# statecharts, kept in step by `monas generate`";
-const END: &str = "# end of the statecharts";
+const BLOCK_BEGIN: &str = "# statecharts, kept in step by `monas generate`";
+const BLOCK_END: &str = "# end of the statecharts";
 
 /// Puts lines into the generated block of a table. Each table of a manifest may have its own block.
 pub(crate) fn with_block(manifest: &str, header: &str, lines: &[String]) -> String {
-    let block =
-        format!("{BEGIN}\n{}{END}\n", lines.iter().map(|line| format!("{line}\n")).collect::<String>());
+    let block = format!(
+        "{BLOCK_BEGIN}\n{}{BLOCK_END}\n",
+        lines.iter().map(|line| format!("{line}\n")).collect::<String>()
+    );
     let header = format!("{header}\n");
     let is_header = |at: &usize| *at == 0 || manifest[..*at].ends_with('\n');
     let Some(at) = manifest.match_indices(&header).map(|(at, _)| at).find(is_header) else {
@@ -15,8 +17,8 @@ pub(crate) fn with_block(manifest: &str, header: &str, lines: &[String]) -> Stri
     };
     let (before, rest) = manifest.split_at(at + header.len());
     let (table, after) = rest.split_at(rest.find("\n[").map_or(rest.len(), |end| end + 1));
-    if let Some((head, rest)) = table.split_once(&format!("{BEGIN}\n"))
-        && let Some((_, tail)) = rest.split_once(&format!("{END}\n"))
+    if let Some((head, rest)) = table.split_once(&format!("{BLOCK_BEGIN}\n"))
+        && let Some((_, tail)) = rest.split_once(&format!("{BLOCK_END}\n"))
     {
         return format!("{before}{head}{block}{tail}{after}");
     }
@@ -54,13 +56,16 @@ pub(crate) fn value<'a>(table: &'a str, key: &str) -> Option<&'a str> {
 mod tests {
     use super::*;
 
-    const MEMBERS: &str = "\"statecharts/*\"";
+    const STATECHART_MEMBERS: &str = "\"statecharts/*\"";
 
     #[test]
     fn a_block_is_made_once_and_kept_in_step() {
         let manifest = "[package]\nname = \"a\"\n\n[dependencies]\nb = \"1\"\n\n[lints]\n";
         let one = with_block(manifest, "[dependencies]", &["x = 1".into()]);
-        assert!(one.contains(&format!("[dependencies]\n{BEGIN}\nx = 1\n{END}\nb = \"1\"\n")), "{one}");
+        assert!(
+            one.contains(&format!("[dependencies]\n{BLOCK_BEGIN}\nx = 1\n{BLOCK_END}\nb = \"1\"\n")),
+            "{one}"
+        );
         let two = with_block(&one, "[dependencies]", &["x = 1".into(), "y = 2".into()]);
         assert_eq!(two, one.replace("x = 1\n", "x = 1\ny = 2\n"));
         assert_eq!(with_block(&two, "[dependencies]", &["x = 1".into()]), one);
@@ -72,8 +77,8 @@ mod tests {
         let one = with_block(manifest, "[workspace.dependencies]", &["x = { path = \"x\" }".into()]);
         let both = with_block(&one, "[dependencies]", &["x.workspace = true".into()]);
         let expected = format!(
-            "[workspace.dependencies]\n{BEGIN}\nx = {{ path = \"x\" }}\n{END}\na = \"1\"\n\n[package]\nname = \"team\"\n\n\
-             [dependencies]\n{BEGIN}\nx.workspace = true\n{END}\na.workspace = true\n"
+            "[workspace.dependencies]\n{BLOCK_BEGIN}\nx = {{ path = \"x\" }}\n{BLOCK_END}\na = \"1\"\n\n[package]\nname = \"team\"\n\n\
+             [dependencies]\n{BLOCK_BEGIN}\nx.workspace = true\n{BLOCK_END}\na.workspace = true\n"
         );
         assert_eq!(both, expected);
         assert_eq!(with_block(&both, "[dependencies]", &["x.workspace = true".into()]), expected);
@@ -82,10 +87,13 @@ mod tests {
 
     #[test]
     fn crates_become_members_once() {
-        let one = with_members("[workspace]\nresolver = \"3\"\nmembers = [\"a\"]\n", MEMBERS);
+        let one = with_members("[workspace]\nresolver = \"3\"\nmembers = [\"a\"]\n", STATECHART_MEMBERS);
         assert_eq!(one, "[workspace]\nresolver = \"3\"\nmembers = [\"statecharts/*\", \"a\"]\n");
-        assert_eq!(with_members(&one, MEMBERS), one);
-        assert_eq!(with_members("[workspace]\n", MEMBERS), "[workspace]\nmembers = [\"statecharts/*\"]\n");
+        assert_eq!(with_members(&one, STATECHART_MEMBERS), one);
+        assert_eq!(
+            with_members("[workspace]\n", STATECHART_MEMBERS),
+            "[workspace]\nmembers = [\"statecharts/*\"]\n"
+        );
     }
 
     #[test]

@@ -6,12 +6,12 @@ use std::{fs, io};
 use crate::error::{Error, ErrorKind};
 use crate::manifest::with_members;
 use crate::new_activity::{TEMPLATE, project_for, snake_case};
-use crate::new_project::{TAKEN, write};
+use crate::new_project::{RESERVED_NAMES, write};
 
 const MANIFEST: &str = include_str!("template/module/Cargo.toml.txt");
 
 /// The folder of modules among the members of a workspace.
-const MEMBERS: &str = "\"modules/*\"";
+const MODULE_MEMBERS: &str = "\"modules/*\"";
 
 /// A module that was created.
 #[derive(Clone, PartialEq, Eq, Debug)]
@@ -30,7 +30,9 @@ pub struct NewModule {
 pub fn create_module(name: &str, here: &Path) -> Result<NewModule, Error> {
     let project = project_for(name, here)?;
     let package = snake_case(name);
-    if TAKEN.contains(&package.as_str()) || aseme_codegen::generate::identifier(&[&package]) != package {
+    if RESERVED_NAMES.contains(&package.as_str())
+        || aseme_codegen::generate::identifier(&[&package]) != package
+    {
         let message = format!("`{package}` is reserved by Rust or the project: choose another name");
         return Err(Error::new(ErrorKind::Argument, message));
     }
@@ -59,7 +61,7 @@ pub fn create_module(name: &str, here: &Path) -> Result<NewModule, Error> {
 fn member(project: &Path) -> io::Result<Option<PathBuf>> {
     let path = project.join("Cargo.toml");
     let there = fs::read_to_string(&path)?;
-    let text = with_members(&there, MEMBERS);
+    let text = with_members(&there, MODULE_MEMBERS);
     match text == there {
         true => Ok(None),
         false => monas_files::write(&path, text).map(|()| Some(path)),

@@ -39,7 +39,7 @@ const FILES: [(&str, &str); 25] = [
 const CRATES: [&str; 5] = ["monas", "monas-cli", "narukom", "narukom-build", "yase"];
 
 /// Names of the project's packages, and names with a meaning to Cargo or Rust.
-pub(crate) const TAKEN: [&str; 11] = [
+pub(crate) const RESERVED_NAMES: [&str; 11] = [
     "activities",
     "alloc",
     "core",
@@ -105,7 +105,7 @@ fn check(name: &str) -> Result<(), String> {
         ));
     }
     let module = name.replace('-', "_");
-    match TAKEN.contains(&name) || aseme_codegen::generate::identifier(&[&module]) != module {
+    match RESERVED_NAMES.contains(&name) || aseme_codegen::generate::identifier(&[&module]) != module {
         true => Err(format!("`{name}` is reserved by Rust or Monas: use for example `team-{name}`")),
         false => Ok(()),
     }

@@ -10,13 +10,13 @@ use crate::error::Error;
 use crate::manifest::{table, value, with_block, with_members};
 
 /// The crates among the members of a workspace.
-const MEMBERS: &str = "\"statecharts/*\"";
+const STATECHART_MEMBERS: &str = "\"statecharts/*\"";
 
 /// The table in which a generated crate names its model.
-const METADATA: &str = "[package.metadata.monas]";
+const METADATA_TABLE: &str = "[package.metadata.monas]";
 
 /// The file of the team's package that links the statecharts.
-const LINKS: &str = "src/statecharts.rs";
+const LINK_FILE: &str = "src/statecharts.rs";
 
 /// A Cargo workspace with the package of a team.
 pub struct Project {
@@ -128,7 +128,7 @@ impl Project {
         Ok(format!(
             "# Generated with its sources by `monas generate`.\n[package]\nname = \"{name}\"\n\
              description = \"The statechart {name}, generated from its model\"\n{settings}\n\
-             [dependencies]\n{dependencies}\n{METADATA}\nmodel = \"{}\"\n\n[lib]\ndoctest = false\ntest = false\n{lints}",
+             [dependencies]\n{dependencies}\n{METADATA_TABLE}\nmodel = \"{}\"\n\n[lib]\ndoctest = false\ntest = false\n{lints}",
             self.relative(model)
         ))
     }
@@ -154,7 +154,7 @@ impl Project {
     /// The model of a generated crate, if the file exists.
     pub(crate) fn model_of(&self, name: &str) -> Option<PathBuf> {
         let manifest = fs::read_to_string(self.statecharts().join(name).join("Cargo.toml")).ok()?;
-        let model = self.root.join(value(table(&manifest, METADATA)?, "model")?);
+        let model = self.root.join(value(table(&manifest, METADATA_TABLE)?, "model")?);
         model.is_file().then_some(model)
     }
 
@@ -183,7 +183,7 @@ impl Project {
         let mut changed = Vec::new();
         let lines: Vec<String> = crates.iter().map(|name| path(name, 0)).collect();
         let text = |manifest: &str| {
-            let manifest = with_members(manifest, MEMBERS);
+            let manifest = with_members(manifest, STATECHART_MEMBERS);
             if is_shared { with_block(&manifest, "[workspace.dependencies]", &lines) } else { manifest }
         };
         changed.extend(edited(&self.root.join("Cargo.toml"), text)?);
@@ -193,7 +193,7 @@ impl Project {
             with_block(manifest, "[dependencies]", &lines)
         };
         changed.extend(edited(&self.team.join("Cargo.toml"), text)?);
-        changed.extend(edited(&self.team.join(LINKS), |_| links(&crates))?);
+        changed.extend(edited(&self.team.join(LINK_FILE), |_| links(&crates))?);
         let main = ["src/main.rs", "src/lib.rs"].map(|file| self.team.join(file));
         if let Some(main) = main.iter().find(|file| file.is_file()) {
             changed.extend(edited(main, with_module)?);
@@ -296,8 +296,8 @@ mod tests {
         assert_eq!(read("Cargo.toml").matches("scout").count(), 3);
         fs::remove_dir_all(folder.path().join("statecharts/scout")).expect("it is there");
         project().link().expect("it is linked");
-        assert!(!read("Cargo.toml").contains("scout") && !read(LINKS).contains("scout"));
-        assert!(read("Cargo.toml").contains("goalie") && read(LINKS).contains("goalie"));
+        assert!(!read("Cargo.toml").contains("scout") && !read(LINK_FILE).contains("scout"));
+        assert!(read("Cargo.toml").contains("goalie") && read(LINK_FILE).contains("goalie"));
         assert!(project().link().expect("it is linked").is_empty());
     }
 

@@ -10,13 +10,13 @@ use yase::{Diagnostic, Severity};
 use crate::{CommandOutput, Format};
 
 /// The columns that are shown of a source line with more characters: it is cut around the finding.
-const WINDOW: usize = 100;
+const MAX_SOURCE_COLUMNS: usize = 100;
 
 /// How many columns of a long line are shown before the finding.
-const BEFORE: usize = 30;
+const COLUMNS_BEFORE_FINDING: usize = 30;
 
 /// The characters of a message or a hint that are shown, at most: a name may fill a whole file.
-const MESSAGE: usize = 1000;
+const MAX_MESSAGE_LENGTH: usize = 1000;
 
 /// Writes diagnostics on standard error, in the given order.
 pub fn write(console: &mut CommandOutput<'_>, format: Format, diagnostics: &[Diagnostic]) -> io::Result<()> {
@@ -133,8 +133,8 @@ fn drawn(diagnostic: &Diagnostic, colour: bool) -> String {
 /// A text of the user in displayable form: without control characters, and not longer than a
 /// screen.
 fn shown(text: &str) -> String {
-    let mut shown: String = text.chars().take(MESSAGE).map(printable).collect();
-    if text.chars().nth(MESSAGE).is_some() {
+    let mut shown: String = text.chars().take(MAX_MESSAGE_LENGTH).map(printable).collect();
+    if text.chars().nth(MAX_MESSAGE_LENGTH).is_some() {
         shown.push('…');
     }
     shown
@@ -164,14 +164,14 @@ impl Excerpt {
     /// The part of a line around its bytes `start..end`, which are clipped to it.
     fn of(line: &str, start: usize, end: usize) -> Excerpt {
         let width = |c: char| printable(c).width().unwrap_or(0);
-        let is_long = line.chars().nth(WINDOW).is_some();
+        let is_long = line.chars().nth(MAX_SOURCE_COLUMNS).is_some();
         let mut left: Vec<char> = Vec::new();
         let mut columns = 0;
         // Backwards from the place, so that a long line costs no more than a short one.
         let before = &line[..floor(line, start)];
         for c in before.chars().rev() {
             columns += width(c);
-            if is_long && columns > BEFORE {
+            if is_long && columns > COLUMNS_BEFORE_FINDING {
                 left.push('…');
                 break;
             }
@@ -182,7 +182,7 @@ impl Excerpt {
         let mut at = before.len();
         let mut columns = excerpt.before;
         for c in line[before.len()..].chars() {
-            if is_long && columns + width(c) >= WINDOW {
+            if is_long && columns + width(c) >= MAX_SOURCE_COLUMNS {
                 excerpt.line.push('…');
                 break;
             }
@@ -258,11 +258,18 @@ error[E0201]: `Serch` is unknown
     fn a_long_line_is_cut_around_the_place() {
         let line = format!("{}ab{}", "x".repeat(200), "y".repeat(200));
         let Excerpt { line, before, marked } = Excerpt::of(&line, 200, 202);
-        assert_eq!(line, format!("…{}ab{}…", "x".repeat(BEFORE), "y".repeat(WINDOW - BEFORE - 4)));
-        assert_eq!((before, marked), (BEFORE + 1, 2));
+        assert_eq!(
+            line,
+            format!(
+                "…{}ab{}…",
+                "x".repeat(COLUMNS_BEFORE_FINDING),
+                "y".repeat(MAX_SOURCE_COLUMNS - COLUMNS_BEFORE_FINDING - 4)
+            )
+        );
+        assert_eq!((before, marked), (COLUMNS_BEFORE_FINDING + 1, 2));
         let whole = "z".repeat(100_000);
         let cut = Excerpt::of(&whole, 70_000, 100_000);
-        assert!(cut.line.chars().count() <= WINDOW && cut.marked < WINDOW, "{cut:?}");
+        assert!(cut.line.chars().count() <= MAX_SOURCE_COLUMNS && cut.marked < MAX_SOURCE_COLUMNS, "{cut:?}");
         let short = Excerpt::of("a = b", 4, 5);
         assert_eq!(short, Excerpt { line: "a = b".into(), before: 4, marked: 1 });
     }

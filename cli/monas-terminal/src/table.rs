@@ -6,7 +6,7 @@ use std::io::{self, IsTerminal};
 use unicode_width::UnicodeWidthStr;
 
 /// Blanks between two columns, and between those of a table that does not fit with them.
-const GAPS: [usize; 2] = [2, 1];
+const COLUMN_SPACINGS: [usize; 2] = [2, 1];
 
 /// A table whose columns are right-aligned from column `first_number` on.
 pub struct Table {
@@ -74,7 +74,7 @@ impl Table {
 
     /// Header, a rule, and the rows.
     fn text(&self, limit: usize) -> String {
-        let [wide, narrow] = GAPS.map(|gap| (gap, self.folded(limit, gap)));
+        let [wide, narrow] = COLUMN_SPACINGS.map(|gap| (gap, self.folded(limit, gap)));
         let (gap, table) = if wide.1.width(wide.0) <= limit { wide } else { narrow };
         let mut lines = self.lines(&table.header, &table.widths, gap);
         lines.push("─".repeat(table.width(gap)));

@@ -6,17 +6,17 @@ use std::time::Duration;
 use monas::{Blackboard, BoxError, Progress};
 
 use crate::messages::{Drive, Vehicle};
-use crate::{CHARGER, DOCK, DRIVE, NEAR, ORDERS, VEHICLE};
+use crate::{CHARGER, DOCK, DRIVE, ORDERS, POSITION_TOLERANCE, VEHICLE};
 
 /// Fastest speed, m/s.
-const FASTEST: f64 = 0.8;
+const MAX_SPEED: f64 = 0.8;
 /// Speed for each metre of distance, 1/s: the vehicle brakes smoothly.
 const GAIN: f64 = 1.5;
 /// The battery is charged up to here.
-const FULL: f64 = 0.95;
+const FULL_CHARGE: f64 = 0.95;
 
 /// Called again when the vehicle has measured, at the latest after this time.
-const LATER: Progress = Progress::after(Duration::from_millis(200));
+const NEXT_MEASUREMENT: Progress = Progress::after(Duration::from_millis(200));
 
 fn vehicle(board: &Blackboard) -> Vehicle {
     board.read(VEHICLE).copied().unwrap_or_default()
@@ -26,13 +26,18 @@ fn vehicle(board: &Blackboard) -> Vehicle {
 fn command(board: &mut Blackboard, speed: f64, lift: bool, done: bool) -> Result<Progress, BoxError> {
     let speed = if done { 0.0 } else { speed };
     board.publish(DRIVE, Drive { speed, lift })?;
-    Ok(if done { Progress::Done } else { LATER })
+    Ok(if done { Progress::Done } else { NEXT_MEASUREMENT })
 }
 
 fn drive_to(board: &mut Blackboard, goal: f64) -> Result<Progress, BoxError> {
     let Vehicle { position, loaded, .. } = vehicle(board);
     let distance = goal - position;
-    command(board, (GAIN * distance).clamp(-FASTEST, FASTEST), loaded, distance.abs() < NEAR)
+    command(
+        board,
+        (GAIN * distance).clamp(-MAX_SPEED, MAX_SPEED),
+        loaded,
+        distance.abs() < POSITION_TOLERANCE,
+    )
 }
 
 fn drive_to_shelf(board: &mut Blackboard) -> Result<Progress, BoxError> {
@@ -59,7 +64,7 @@ fn put_down(board: &mut Blackboard) -> Result<Progress, BoxError> {
 }
 
 fn charge(board: &mut Blackboard) -> Result<Progress, BoxError> {
-    let done = vehicle(board).charge >= FULL;
+    let done = vehicle(board).charge >= FULL_CHARGE;
     command(board, 0.0, false, done)
 }
 

@@ -50,4 +50,4 @@ pub const DOCK: f64 = 1.0;
 /// The shelves are between these positions, m.
 pub const SHELVES: (f64, f64) = (3.0, 9.0);
 /// The vehicle is at a position if it is this near, m.
-pub const NEAR: f64 = 0.02;
+pub const POSITION_TOLERANCE: f64 = 0.02;

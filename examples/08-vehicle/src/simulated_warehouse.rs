@@ -3,7 +3,7 @@
 use monas::{Activity, Blackboard, BoxError, Parameters, Progress, Timestamp, Topics};
 
 use crate::messages::{Drive, Orders, Vehicle};
-use crate::{CHARGER, DRIVE, NEAR, ORDERS, SHELVES, VEHICLE};
+use crate::{CHARGER, DRIVE, ORDERS, POSITION_TOLERANCE, SHELVES, VEHICLE};
 
 /// Seconds from one order to the next.
 const ORDER_INTERVAL: f64 = 25.0;
@@ -32,7 +32,7 @@ impl SimulatedWarehouse {
         let way = if *charge > 0.0 { drive.speed * seconds } else { 0.0 };
         *position += way;
         *charge -= way.abs() * CHARGE_PER_METRE;
-        if (*position - CHARGER).abs() < NEAR && drive.speed == 0.0 {
+        if (*position - CHARGER).abs() < POSITION_TOLERANCE && drive.speed == 0.0 {
             *charge += CHARGE_PER_SECOND * seconds;
         }
         *charge = charge.clamp(0.0, 1.0);

@@ -27,11 +27,11 @@ topic! {
     PICTURE: State<Picture, 1> = "bench/picture";
 }
 
-const LARGE: usize = 1 << 20;
+const LARGE_SIZE: usize = 1 << 20;
 
 /// Timeout of a receiver: plain zenoh drops messages when a line is full, and does not retransmit
 /// them.
-const PATIENCE: Duration = Duration::from_secs(1);
+const TIMEOUT: Duration = Duration::from_secs(1);
 
 /// A path for messages: the first function sends a message with its time of sending, the second
 /// waits for the next and returns that time, or `None` after the timeout.
@@ -157,7 +157,7 @@ impl MessagePath {
             send,
             receive: Box::new(move || {
                 let _open = (&listener, &connector);
-                let sample = subscriber.recv_timeout(PATIENCE).unwrap()?;
+                let sample = subscriber.recv_timeout(TIMEOUT).unwrap()?;
                 Some(when(&M::decode(&*sample.payload().to_bytes()).unwrap()))
             }),
             lost: 0,
@@ -192,7 +192,7 @@ impl MessagePath {
                             last = sent;
                             return Some(sent);
                         }
-                        _ if now() - begun > PATIENCE.as_nanos() as u64 => return None,
+                        _ if now() - begun > TIMEOUT.as_nanos() as u64 => return None,
                         // It may have arrived in between: then do not wait.
                         _ => thread::park_timeout(Duration::from_millis(100)),
                     }
@@ -271,7 +271,7 @@ fn when_ball(ball: &Ball) -> u64 {
 }
 
 fn picture(sent: u64) -> Picture {
-    let mut pixels = vec![sent as u8; LARGE];
+    let mut pixels = vec![sent as u8; LARGE_SIZE];
     pixels[..8].copy_from_slice(&sent.to_le_bytes());
     Picture { pixels }
 }

@@ -5,7 +5,7 @@ use crate::protocol::Packet;
 use crate::transport::local;
 
 /// Longest message that is read from a stream.
-pub const LIMIT: usize = 1 << 16;
+pub const MAX_MESSAGE_SIZE: usize = 1 << 16;
 
 /// The number of requests on a stream before the first invalid one, and their re-encoding.
 pub fn requests(stream: &[u8]) -> (usize, Vec<u8>) {
@@ -24,7 +24,7 @@ pub fn datagram(bytes: &[u8]) -> Packet {
 
 fn all<M: prost::Message + Default>(mut stream: &[u8]) -> (usize, Vec<u8>) {
     let (mut count, mut written) = (0, Vec::new());
-    while let Ok(message) = frame::read::<M>(&mut stream, LIMIT) {
+    while let Ok(message) = frame::read::<M>(&mut stream, MAX_MESSAGE_SIZE) {
         frame::append(&message, &mut written);
         count += 1;
     }

@@ -9,10 +9,10 @@ use std::time::Duration;
 use crate::protocol::Packet;
 
 /// The most packets that wait.
-const PACKETS: usize = 16_384;
+const MAX_PACKETS: usize = 16_384;
 
 /// The most bytes that wait, besides the last packet's.
-const BYTES: usize = 64 << 20;
+const MAX_BYTES: usize = 64 << 20;
 
 /// Queue of received packets. A packet that does not fit is dropped and counted; the protocol
 /// requests it again.
@@ -40,7 +40,7 @@ impl PacketInbox {
     /// Adds a packet.
     pub fn put(&self, packet: Packet) {
         let mut content = self.content();
-        if content.packets.len() == PACKETS || content.bytes > BYTES {
+        if content.packets.len() == MAX_PACKETS || content.bytes > MAX_BYTES {
             content.dropped += 1;
             return;
         }
@@ -139,12 +139,12 @@ mod tests {
     #[test]
     fn invalid_input_is_dropped_and_counted() {
         let inbox = PacketInbox::default();
-        (0..PACKETS + 10).for_each(|_| inbox.put(packet("a", 0)));
+        (0..MAX_PACKETS + 10).for_each(|_| inbox.put(packet("a", 0)));
         assert_eq!(inbox.dropped(), 10);
-        assert_eq!(std::iter::from_fn(|| inbox.take()).count(), PACKETS);
+        assert_eq!(std::iter::from_fn(|| inbox.take()).count(), MAX_PACKETS);
         assert!(inbox.is_empty());
         for _ in 0..6 {
-            inbox.put(packet(&"x".repeat(BYTES / 8), BYTES / 8));
+            inbox.put(packet(&"x".repeat(MAX_BYTES / 8), MAX_BYTES / 8));
         }
         assert_eq!(inbox.dropped(), 11, "names count as much as what they bring");
     }

@@ -21,7 +21,7 @@ const LONGEST_WAIT: Duration = Duration::from_millis(100);
 
 /// The most received packets that are handled before something is sent: under any load the link
 /// still sends and can be stopped.
-const ROUND: usize = 256;
+const MAX_PACKETS_PER_ROUND: usize = 256;
 
 /// Carries packets. It puts received packets into the [`PacketInbox`] that it was created with.
 pub trait Transport: Send {
@@ -228,7 +228,7 @@ impl LinkWorker {
     }
 
     fn take_in(&mut self) {
-        for packet in (0..ROUND).map_while(|_| self.inbox.take()) {
+        for packet in (0..MAX_PACKETS_PER_ROUND).map_while(|_| self.inbox.take()) {
             self.bridge.handle(&packet, (self.clock)());
         }
     }

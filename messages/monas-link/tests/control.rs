@@ -65,7 +65,7 @@ impl Served {
     }
 }
 
-const SOON: Duration = Duration::from_secs(20);
+const TIMEOUT: Duration = Duration::from_secs(20);
 
 #[test]
 fn a_tool_learns_what_there_is_and_publishes() {
@@ -98,7 +98,7 @@ fn a_tool_learns_what_there_is_and_publishes() {
     );
 
     let mut watching = client.watch("robot_1", "soccer/ball", true).unwrap();
-    let seen = watching.wait(SOON).unwrap().unwrap();
+    let seen = watching.wait(TIMEOUT).unwrap().unwrap();
     assert_eq!(
         (seen.sequence, seen.size, seen.lost),
         (1, 18, 0),
@@ -127,7 +127,7 @@ fn a_slow_tool_loses_counted_messages_and_delays_no_other() {
     }
     let (mut newest, mut heard, mut lost) = (0, 1, 0);
     while newest < published {
-        let seen = watching.wait(SOON).unwrap().unwrap();
+        let seen = watching.wait(TIMEOUT).unwrap().unwrap();
         assert!(seen.sequence > newest, "in order, each once");
         (newest, lost) = (seen.sequence, seen.lost);
         heard += 1;
@@ -219,11 +219,11 @@ fn several_patterns_are_watched_on_one_connection() {
         served.client().watch_all("", &["soccer/ball", "other/topic", "soccer/path"], true).unwrap();
     // The stream is set up when the retained message arrives.
     ball.publish(Ball::default(), Timestamp::from_nanos(1));
-    let first = watch.wait(SOON).unwrap().unwrap();
+    let first = watch.wait(TIMEOUT).unwrap().unwrap();
     path.publish(Ball::default(), Timestamp::from_nanos(2));
-    let second = watch.wait(SOON).unwrap().unwrap();
+    let second = watch.wait(TIMEOUT).unwrap().unwrap();
     assert_eq!([first.path, second.path], ["soccer/ball", "soccer/path"]);
 
     let mut refused = served.client().watch_all("", &["other/topic", "none/at_all"], true).unwrap();
-    assert!(refused.wait(SOON).unwrap_err().to_string().contains("none of the patterns"));
+    assert!(refused.wait(TIMEOUT).unwrap_err().to_string().contains("none of the patterns"));
 }

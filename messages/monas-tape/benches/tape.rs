@@ -67,9 +67,9 @@ topic! {
 const ROUNDS: usize = 7;
 /// Small messages per round; they fit into the tape's queue, so that no publisher waits for the
 /// disk.
-const SMALL: u64 = 50_000;
+const SMALL_MESSAGES: u64 = 50_000;
 /// Bytes of large messages per round.
-const LARGE: usize = 512 << 20;
+const LARGE_BYTES: usize = 512 << 20;
 
 fn main() {
     let rounds = if std::env::args().any(|argument| argument == "--bench") { ROUNDS } else { 1 };
@@ -82,7 +82,7 @@ fn main() {
 
     println!("to a file, MB/s of messages until the last is written; median (least to most)");
     for size in [200, 64 << 10, 1 << 20] {
-        let total = if size == 200 { LARGE / 8 } else { LARGE };
+        let total = if size == 200 { LARGE_BYTES / 8 } else { LARGE_BYTES };
         let rates: Vec<f64> =
             (0..rounds).map(|_| throughput(size, total / if rounds == 1 { 64 } else { 1 })).collect();
         print_row(&format!("{size} bytes each"), &rates);
@@ -139,8 +139,8 @@ fn cost(hub: &Hub) -> f64 {
     };
     publish(&mut publisher, 1_000);
     let begun = processor_time();
-    publish(&mut publisher, SMALL);
-    (processor_time() - begun) / SMALL as f64 * 1e9
+    publish(&mut publisher, SMALL_MESSAGES);
+    (processor_time() - begun) / SMALL_MESSAGES as f64 * 1e9
 }
 
 /// The processor time of this thread, in seconds.

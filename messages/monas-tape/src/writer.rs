@@ -16,7 +16,7 @@ use crate::recording::{Attachment, Channel, MetadataEntry, RecordedSample};
 use crate::tape_file::TapeStorage;
 
 /// Number of polls without entries after which a chunk is flushed: about a second.
-const SILENCE: u32 = 100;
+const IDLE_POLLS: u32 = 100;
 
 /// Number of polls after which another file is tried: about a second at first,
 const FIRST_PAUSE: u32 = 100;
@@ -177,7 +177,7 @@ impl TapeWriter {
             }
             // In simulated time chunks end by that time alone, so that two tapes of one run are
             // equal.
-            if self.is_real_time && self.is_dirty && self.silent_polls >= SILENCE {
+            if self.is_real_time && self.is_dirty && self.silent_polls >= IDLE_POLLS {
                 self.flush();
             }
             self.polls = self.polls.wrapping_add(1);

@@ -10,7 +10,7 @@ use crate::topic::TopicDeclaration;
 /// The most messages that wait for their last reader. A reader that keeps pace has dropped the
 /// messages returned by the hub's ring by the time the next message is created; the others serve
 /// readers that are a few cycles behind.
-const SPARE: usize = 4;
+const MAX_SPARE_MESSAGES: usize = 4;
 
 /// Messages that left the hub's ring when this writer published.
 #[derive(Default)]
@@ -95,10 +95,10 @@ impl MessagePool {
     /// Keeps `message` until its last reader has dropped it.
     #[inline]
     fn keep(&mut self, message: Arc<dyn AnyMessage>) {
-        if self.spares.len() < SPARE {
+        if self.spares.len() < MAX_SPARE_MESSAGES {
             self.spares.push(message);
         } else {
-            self.turn = (self.turn + 1) % SPARE;
+            self.turn = (self.turn + 1) % MAX_SPARE_MESSAGES;
             self.spares[self.turn] = message;
         }
     }

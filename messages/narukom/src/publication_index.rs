@@ -6,7 +6,7 @@ use crate::hub_state::HOST_LIMIT;
 use crate::sample::{Channel, HostId, TopicSlot};
 
 /// The number of recent publications whose channels are stored.
-const KNOWN: usize = 14;
+const STORED_CHANNELS: usize = 14;
 
 /// The number of low bits of a publication's number that are stored beside its channel.
 const NUMBER_BITS: u32 = 24;
@@ -26,13 +26,13 @@ pub(crate) struct PublicationIndex {
     /// The low bits and the channel of the last publication, stored beside its number: a reader
     /// that keeps pace needs nothing else.
     newest: AtomicU64,
-    known: [AtomicU64; KNOWN],
+    known: [AtomicU64; STORED_CHANNELS],
 }
 
 /// The channels of a range of publications.
 #[derive(Clone, Copy)]
 pub(crate) struct RecentChannels {
-    channels: [u64; KNOWN],
+    channels: [u64; STORED_CHANNELS],
     count: usize,
 }
 
@@ -41,7 +41,7 @@ impl PublicationIndex {
         PublicationIndex {
             last: AtomicU64::new(0),
             newest: AtomicU64::new(0),
-            known: [const { AtomicU64::new(0) }; KNOWN],
+            known: [const { AtomicU64::new(0) }; STORED_CHANNELS],
         }
     }
 
@@ -55,7 +55,7 @@ impl PublicationIndex {
     /// The caller must hold the hub's lock.
     #[inline]
     pub(crate) fn record(&self, number: u64, channel: Channel) {
-        let place = (number % KNOWN as u64) as usize;
+        let place = (number % STORED_CHANNELS as u64) as usize;
         let packed = packed(number, channel);
         self.known[place].store(packed, Ordering::Release);
         self.newest.store(packed, Ordering::Release);
@@ -80,10 +80,11 @@ impl PublicationIndex {
     /// are no longer known.
     #[inline]
     pub(crate) fn recent(&self, since: u64, last: u64) -> Option<RecentChannels> {
-        let count = usize::try_from(last.checked_sub(since)?).ok().filter(|count| *count <= KNOWN)?;
-        let mut recent = RecentChannels { channels: [0; KNOWN], count };
+        let count =
+            usize::try_from(last.checked_sub(since)?).ok().filter(|count| *count <= STORED_CHANNELS)?;
+        let mut recent = RecentChannels { channels: [0; STORED_CHANNELS], count };
         for (number, channel) in (since + 1..=last).zip(&mut recent.channels) {
-            *channel = self.known[(number % KNOWN as u64) as usize].load(Ordering::Acquire);
+            *channel = self.known[(number % STORED_CHANNELS as u64) as usize].load(Ordering::Acquire);
             // The slot was overwritten by a later publication.
             if !is_of(*channel, number) {
                 return None;
@@ -161,7 +162,7 @@ mod tests {
         let mut publisher = hub.publisher(OTHER, "body").unwrap();
         let (sender, done) = pipe();
         let exchange = {
-            (0..KNOWN).for_each(|_| publisher.publish(Ball::default(), Timestamp::ZERO));
+            (0..STORED_CHANNELS).for_each(|_| publisher.publish(Ball::default(), Timestamp::ZERO));
             hub.state()
         };
         std::thread::scope(|scope| {
@@ -170,7 +171,10 @@ mod tests {
                     reader.process_messages(Timestamp::ZERO);
                     assert!(subscriber.next_sample().is_none());
                 }
-                assert_eq!((reader.position(), subscriber.position()), (KNOWN as u64, KNOWN as u64));
+                assert_eq!(
+                    (reader.position(), subscriber.position()),
+                    (STORED_CHANNELS as u64, STORED_CHANNELS as u64)
+                );
                 sender.send(()).unwrap();
             });
             let waited = done.recv_timeout(Duration::from_secs(20));
@@ -183,7 +187,7 @@ mod tests {
     fn a_number_whose_bits_have_come_again_is_not_taken_for_an_earlier_one() {
         let head = PublicationIndex::new();
         // A multiple of both the range of the low bits and the number of slots.
-        let much_later = 5 + (1 << NUMBER_BITS) * KNOWN as u64;
+        let much_later = 5 + (1 << NUMBER_BITS) * STORED_CHANNELS as u64;
         for number in [5, much_later] {
             head.record(number, channel(u32::MAX, 255));
             head.advance_to(number);

@@ -57,7 +57,7 @@ pub(crate) struct Ring {
 
 /// The most encodings that wait for their last reader, such as a link that may have to retransmit
 /// them.
-const SPARE: usize = 4;
+const MAX_SPARE_ENCODINGS: usize = 4;
 
 impl Ring {
     pub(crate) fn new(capacity: usize) -> Ring {
@@ -131,10 +131,10 @@ impl Ring {
     /// Keeps an encoding that left the ring, to reuse it when it has no other references.
     fn reuse(&mut self, encoding: Option<Arc<EncodingSlot>>) {
         let Some(encoding) = encoding else { return };
-        if self.spares.len() < SPARE {
+        if self.spares.len() < MAX_SPARE_ENCODINGS {
             self.spares.push(encoding);
         } else {
-            self.turn = (self.turn + 1) % SPARE;
+            self.turn = (self.turn + 1) % MAX_SPARE_ENCODINGS;
             self.spares[self.turn] = encoding;
         }
     }

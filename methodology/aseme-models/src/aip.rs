@@ -3,7 +3,7 @@
 
 use yase::expression::TextPosition;
 
-use crate::meta::{Class, Feature, FeatureValue, MANY, Metamodel, ModelInstance, Object, TypedModel};
+use crate::meta::{Class, Feature, FeatureValue, Metamodel, ModelInstance, Object, TypedModel, UNLIMITED};
 
 /// Protocols and their participants.
 #[derive(Clone, PartialEq, Debug, Default)]
@@ -73,7 +73,7 @@ static METAMODEL: Metamodel = Metamodel {
             feature: "protocols",
             least: 1,
             title: 1,
-            features: &[Feature::links("participants", PARTICIPANTS, 2, MANY), Feature::text("name")],
+            features: &[Feature::links("participants", PARTICIPANTS, 2, UNLIMITED), Feature::text("name")],
             subclasses: &[],
         },
     ],

@@ -79,7 +79,7 @@ pub(crate) enum FeatureKind {
 }
 
 /// No upper limit.
-pub(crate) const MANY: usize = usize::MAX;
+pub(crate) const UNLIMITED: usize = usize::MAX;
 
 /// A model.
 #[derive(Clone, PartialEq, Debug)]

@@ -144,7 +144,7 @@ pub fn apply_refinements(
     }
     let RefinementTransfer { added, kept, lost, .. } = carrying;
     let mut text = file.text().to_owned();
-    for section in entries::CARRIED {
+    for section in entries::TRANSFERRED_SECTIONS {
         let lines: Vec<&str> =
             added.iter().filter(|(of, _)| *of == section).map(|(_, line)| line.as_str()).collect();
         text = entries::inserted(&text, section, &lines);

@@ -6,7 +6,7 @@
 
 use yase::expression::TextPosition;
 
-use crate::meta::{Class, Feature, FeatureValue, MANY, Metamodel, ModelInstance, Object, TypedModel};
+use crate::meta::{Class, Feature, FeatureValue, Metamodel, ModelInstance, Object, TypedModel, UNLIMITED};
 
 /// Roles, capabilities, activities and functionalities.
 #[derive(Clone, PartialEq, Debug, Default)]
@@ -105,7 +105,7 @@ static METAMODEL: Metamodel = Metamodel {
             title: 0,
             features: &[
                 Feature::text("name"),
-                Feature::links("capability_activities", ACTIVITIES, 1, MANY)
+                Feature::links("capability_activities", ACTIVITIES, 1, UNLIMITED)
                     .called("activities")
                     .once("activities"),
                 Feature::text("description"),
@@ -118,12 +118,12 @@ static METAMODEL: Metamodel = Metamodel {
             least: 1,
             title: 2,
             features: &[
-                Feature::links("role_activities", ACTIVITIES, 1, MANY)
+                Feature::links("role_activities", ACTIVITIES, 1, UNLIMITED)
                     .called("activities")
                     .once("activities"),
                 Feature::formulas("liveness"),
                 Feature::text("name"),
-                Feature::links("capabilities", CAPABILITIES, 0, MANY),
+                Feature::links("capabilities", CAPABILITIES, 0, UNLIMITED),
             ],
             subclasses: &[],
         },

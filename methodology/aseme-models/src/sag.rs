@@ -2,7 +2,7 @@
 
 use yase::expression::TextPosition;
 
-use crate::meta::{Class, Feature, FeatureValue, MANY, Metamodel, ModelInstance, Object, TypedModel};
+use crate::meta::{Class, Feature, FeatureValue, Metamodel, ModelInstance, Object, TypedModel, UNLIMITED};
 
 /// Actors and their goals.
 #[derive(Clone, PartialEq, Debug, Default)]
@@ -55,7 +55,7 @@ static METAMODEL: Metamodel = Metamodel {
                 Feature::text("requirements"),
                 Feature::text("name"),
                 Feature::links("depender", ACTORS, 1, 1),
-                Feature::links("dependee", ACTORS, 0, MANY).called("dependees"),
+                Feature::links("dependee", ACTORS, 0, UNLIMITED).called("dependees"),
             ],
             subclasses: &[],
         },

@@ -3,7 +3,7 @@
 
 use yase::expression::TextPosition;
 
-use crate::meta::{Class, Feature, FeatureValue, MANY, Metamodel, ModelInstance, Object, TypedModel};
+use crate::meta::{Class, Feature, FeatureValue, Metamodel, ModelInstance, Object, TypedModel, UNLIMITED};
 
 /// Roles and use cases.
 #[derive(Clone, PartialEq, Debug, Default)]
@@ -92,8 +92,8 @@ static METAMODEL: Metamodel = Metamodel {
             least: 1,
             title: 2,
             features: &[
-                Feature::links("participant", ROLES, 0, MANY).called("participants"),
-                Feature::links("include", USECASES, 0, MANY).called("includes"),
+                Feature::links("participant", ROLES, 0, UNLIMITED).called("participants"),
+                Feature::links("include", USECASES, 0, UNLIMITED).called("includes"),
                 Feature::text("name"),
                 Feature::text("specified_by"),
             ],

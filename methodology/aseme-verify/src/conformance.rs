@@ -22,7 +22,7 @@ use graph::{Graph, Observable};
 use infinite_traces::{InfiniteTraceResult, endlessly};
 
 /// Limit of explored pairs of states and residuals.
-const MOST: usize = 400_000;
+const MAX_PAIRS: usize = 400_000;
 
 /// A difference between a chart and its formulas.
 #[derive(Clone, Debug)]
@@ -215,7 +215,7 @@ impl ConformanceComparison<'_> {
         let mut open = 0;
         while let Some(at) = came.order.get(open).cloned() {
             open += 1;
-            if came.order.len() > MOST || self.language.is_too_large() || (self.is_stopped)() {
+            if came.order.len() > MAX_PAIRS || self.language.is_too_large() || (self.is_stopped)() {
                 return (InclusionResult::Unknown, came);
             }
             let may_end = self.may_end_early || at.1.iter().any(|&rest| self.language.may_end(rest));
@@ -277,7 +277,7 @@ impl ConformanceComparison<'_> {
         let mut work = 0;
         while let Some(((states, rests), trace)) = open.pop_front() {
             work += states.len() * (1 + rests.len());
-            if work > MOST || self.language.is_too_large() || (self.is_stopped)() {
+            if work > MAX_PAIRS || self.language.is_too_large() || (self.is_stopped)() {
                 return InclusionResult::Unknown;
             }
             let may_end = rests.iter().any(|&rest| self.language.may_end(rest));

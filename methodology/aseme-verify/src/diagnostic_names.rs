@@ -10,11 +10,11 @@ use yase_export::notation::kind_word;
 
 /// The largest chart whose nodes get the shortest unique path: the search for it is slow in large
 /// charts.
-const SEARCHED: usize = 400;
+const MAX_SEARCHED_NODES: usize = 400;
 
 /// The most characters of a path in a diagnostic. The path of a composite is a whole term of a
 /// formula; if it is longer, the [short name](StateNames) is used.
-const BRIEF: usize = 60;
+const MAX_PATH_LENGTH: usize = 60;
 
 /// The names of the nodes of a chart in diagnostics, unique in the chart: the shortest path as a
 /// role writes it (`Look~`, `decision/CONDITION`) if that is brief, otherwise the short name.
@@ -45,7 +45,8 @@ impl DiagnosticNames {
     /// The name of a node.
     pub fn name(&self, node: NodeId) -> String {
         let is_free = |path: &String| self.names().named(path).is_none_or(|other| other == node);
-        let brief = self.written(node).filter(|path| path.chars().count() <= BRIEF && is_free(path));
+        let brief =
+            self.written(node).filter(|path| path.chars().count() <= MAX_PATH_LENGTH && is_free(path));
         brief.unwrap_or_else(|| self.names().name(node).to_owned())
     }
 
@@ -66,7 +67,7 @@ impl DiagnosticNames {
 
     /// The node of a name.
     pub fn find(&self, name: &str) -> Option<NodeId> {
-        if self.chart.nodes().len() > SEARCHED {
+        if self.chart.nodes().len() > MAX_SEARCHED_NODES {
             return self.names().named(name);
         }
         let nodes =
@@ -81,7 +82,7 @@ impl DiagnosticNames {
 
     /// The shortest path of a node that a role could write.
     fn written(&self, node: NodeId) -> Option<String> {
-        if self.chart.nodes().len() > SEARCHED {
+        if self.chart.nodes().len() > MAX_SEARCHED_NODES {
             return None;
         }
         if !self.chart.node(node).name.is_empty() || node == Statechart::ROOT {

@@ -44,7 +44,7 @@ pub(crate) use search::GuardModel;
 use search::SatisfiabilitySearch;
 
 /// Limit of alternatives that are searched before the answer is unknown.
-const ALTERNATIVES: usize = 2_500;
+const MAX_ALTERNATIVES: usize = 2_500;
 
 /// The same for the conditions of a whole run.
 const MANY_ALTERNATIVES: usize = 20_000;
@@ -118,7 +118,7 @@ impl<'a> GuardSolver<'a> {
 
     /// Whether all claims can hold at the same time, on one blackboard.
     pub fn together(&self, claims: &[Claim<'_>]) -> Satisfiability {
-        SatisfiabilitySearch::new(ALTERNATIVES).answer(self.all(claims))
+        SatisfiabilitySearch::new(MAX_ALTERNATIVES).answer(self.all(claims))
     }
 
     /// Values with which all of this may hold, where undecidable terms may have any value; or none,

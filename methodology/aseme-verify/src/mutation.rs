@@ -152,7 +152,7 @@ pub fn mutants(source: &Arc<Source>) -> Result<Vec<Mutant>, Vec<Diagnostic>> {
 }
 
 /// The most characters of a transition as a role writes it in the name of a mutant.
-const BRIEF: usize = 80;
+const MAX_TRANSITION_LENGTH: usize = 80;
 
 /// Collects mutants.
 struct MutantCollector<'a> {
@@ -177,7 +177,7 @@ impl MutantCollector<'_> {
     /// The name of a transition.
     fn arrow(&self, id: TransitionId) -> String {
         let written = shortest_transition(self.chart, id);
-        if written.chars().count() <= BRIEF { written } else { self.names.transition(id) }
+        if written.chars().count() <= MAX_TRANSITION_LENGTH { written } else { self.names.transition(id) }
     }
 
     /// Adds a mutant with one transition replaced.

@@ -35,7 +35,7 @@ use aseme_models::transformations::{
 };
 
 /// Limit of explored states per chart.
-const STATES: usize = 100_000;
+const MAX_STATES: usize = 100_000;
 
 /// The result of a conformance check.
 #[derive(Clone, PartialEq, Eq, Debug, Default)]
@@ -268,7 +268,7 @@ fn traces(chart: &Iac, liveness: &Liveness, name: &str, place: Span, found: &mut
         Err(reasons) => return found.findings.extend(reasons),
     };
     let mut surroundings = abstraction.surroundings();
-    let explored = explore(&abstraction.chart, &mut surroundings, STATES);
+    let explored = explore(&abstraction.chart, &mut surroundings, MAX_STATES);
     drop(surroundings);
     found.explored.push((name.to_owned(), ExplorationExtent::of(&explored)));
     let (differences, is_whole) = differences_of_what_is_left_early(&subject.chart, &explored, liveness);

@@ -3,12 +3,13 @@
 /// The strongly connected component of each node, by Tarjan's algorithm without recursion. `next`
 /// lists the successors of each node.
 pub(crate) fn strongly_connected_components<Step>(next: &[Vec<(usize, Step)>]) -> Vec<usize> {
-    const UNSEEN: usize = usize::MAX;
+    const UNVISITED: usize = usize::MAX;
     let count = next.len();
-    let (mut index, mut low, mut component) = (vec![UNSEEN; count], vec![0; count], vec![UNSEEN; count]);
+    let (mut index, mut low, mut component) =
+        (vec![UNVISITED; count], vec![0; count], vec![UNVISITED; count]);
     let (mut stack, mut seen, mut found) = (Vec::new(), 0, 0);
     for root in 0..count {
-        if index[root] != UNSEEN {
+        if index[root] != UNVISITED {
             continue;
         }
         let mut calls = vec![(root, 0)];
@@ -21,9 +22,9 @@ pub(crate) fn strongly_connected_components<Step>(next: &[Vec<(usize, Step)>]) -
             match next[at].get(edge).map(|step| step.0) {
                 Some(to) => {
                     calls.push((at, edge + 1));
-                    if index[to] == UNSEEN {
+                    if index[to] == UNVISITED {
                         calls.push((to, 0));
-                    } else if component[to] == UNSEEN {
+                    } else if component[to] == UNVISITED {
                         low[at] = low[at].min(index[to]);
                     }
                 }

@@ -7,20 +7,20 @@ pub const FRAME_KEYS: [&str; 2] = ["at", "size"];
 /// Key of a transition's layout.
 pub const BENDS_KEY: &str = "via";
 /// The form of a position, for hints.
-pub const AT: &str = "a position is two numbers of pixels, right and down, such as `40 120`";
+pub const POSITION_FORM: &str = "a position is two numbers of pixels, right and down, such as `40 120`";
 /// The form of a size, for hints.
-pub const SIZE: &str = "a size is two numbers of pixels, width and height, such as `160 60`";
+pub const SIZE_FORM: &str = "a size is two numbers of pixels, width and height, such as `160 60`";
 /// The form of corners, for hints.
-pub const VIA: &str = "corners are positions separated by commas, such as `40 80, 120 80`";
+pub const CORNERS_FORM: &str = "corners are positions separated by commas, such as `40 80, 120 80`";
 
 /// The largest coordinate, in pixels.
-const LARGEST: f64 = 100_000.0;
+const MAX_COORDINATE: f64 = 100_000.0;
 
 /// `40 120`.
 pub fn place(text: &str) -> Option<Point> {
     let mut numbers = text.split_whitespace().map(|word| word.parse::<f64>().ok());
     let (right, down) = (numbers.next()??, numbers.next()??);
-    let is_on_page = |number: f64| (0.0..=LARGEST).contains(&number);
+    let is_on_page = |number: f64| (0.0..=MAX_COORDINATE).contains(&number);
     (numbers.next().is_none() && is_on_page(right) && is_on_page(down)).then_some((right, down))
 }
 

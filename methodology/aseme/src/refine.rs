@@ -33,7 +33,7 @@ pub struct UnmatchedEntry {
 }
 
 /// Limit of candidates.
-const CANDIDATES: usize = 5;
+const MAX_CANDIDATES: usize = 5;
 
 /// Applies entries to the transitions of a chart; entries that do not match are returned, in order.
 pub fn refine(chart: &mut Statechart, entries: &[TransitionEntry]) -> Vec<UnmatchedEntry> {
@@ -109,7 +109,7 @@ pub fn refine_states(chart: &mut Statechart, entries: &[StateEntry]) -> Vec<Unma
 }
 
 /// The number of names that are compared for hints about unmatched entries.
-const COMPARISONS: usize = 1_000_000;
+const MAX_COMPARISONS: usize = 1_000_000;
 
 /// A chart in which entries are looked up.
 struct Lookup<'a> {
@@ -121,7 +121,7 @@ struct Lookup<'a> {
 
 impl<'a> Lookup<'a> {
     fn new(chart: &'a Statechart) -> Lookup<'a> {
-        let left = Cell::new(COMPARISONS / chart.nodes().len().max(1));
+        let left = Cell::new(MAX_COMPARISONS / chart.nodes().len().max(1));
         Lookup { chart, index: PathIndex::new(chart), left }
     }
 
@@ -219,7 +219,7 @@ fn similar_transitions(chart: &Statechart, source: &Path, target: &Path) -> Vec<
     let sharing_target =
         chart.transitions().filter(|(_, transition)| target.matches(chart, transition.target));
     let near = sharing_source.chain(sharing_target).map(|(id, _)| path::shortest_transition(chart, id));
-    near.take(CANDIDATES).collect()
+    near.take(MAX_CANDIDATES).collect()
 }
 
 /// Assigns entries to elements. Also returns the unmatched entries, in order.
@@ -253,7 +253,7 @@ fn assign_entries<Id: Copy + Ord>(
 fn unmatched_entry<Id>(wish: &RefinementTarget<'_, Id>, text_of: impl Fn(&Id) -> String) -> UnmatchedEntry {
     let (code, number, candidates) = match wish.named.len() {
         0 => ("E0250", "no", wish.near.clone()),
-        _ => ("E0251", "more than one", wish.named.iter().take(CANDIDATES).map(text_of).collect()),
+        _ => ("E0251", "more than one", wish.named.iter().take(MAX_CANDIDATES).map(text_of).collect()),
     };
     let message = format!("`{}` names {number} {} of the chart", wish.text, wish.thing);
     let diagnostic = Diagnostic::error(code, wish.span, message);

@@ -1,9 +1,9 @@
 //! Detection of falls from the inclination of the torso.
 
 /// Inclination of the torso above which the body has fallen, rad.
-const LYING: f64 = 1.0;
+const FALLEN_ANGLE: f64 = 1.0;
 /// Inclination of the torso below which the body is upright, rad.
-const UPRIGHT: f64 = 0.4;
+const UPRIGHT_ANGLE: f64 = 0.4;
 
 /// Detects whether a body lies, from the inclination of its torso as its inertial unit measures it.
 ///
@@ -19,7 +19,7 @@ impl FallDetector {
     /// Takes the roll and the pitch of the torso, rad.
     pub fn measure(&mut self, roll: f64, pitch: f64) {
         self.tilt = roll.abs().max(pitch.abs());
-        self.is_fallen = self.tilt > LYING || (self.is_fallen && self.tilt > UPRIGHT);
+        self.is_fallen = self.tilt > FALLEN_ANGLE || (self.is_fallen && self.tilt > UPRIGHT_ANGLE);
     }
 
     /// Whether the body lies.
@@ -29,7 +29,7 @@ impl FallDetector {
 
     /// Whether the torso is too inclined to stand or walk: the body falls, lies, or gets up.
     pub fn is_inclined(&self) -> bool {
-        self.tilt > UPRIGHT
+        self.tilt > UPRIGHT_ANGLE
     }
 }
 

@@ -10,11 +10,11 @@ use monas_robot::{Error, ErrorKind};
 use crate::frame::Frame;
 
 /// The longest wait for an image before a thread checks whether it should end.
-const WAIT: Duration = Duration::from_millis(200);
+const IMAGE_TIMEOUT: Duration = Duration::from_millis(200);
 /// The time without an image after which a camera counts as lost.
 const LOST_AFTER: Duration = Duration::from_secs(2);
 /// The pause between two attempts to open a camera.
-const RETRY: Duration = Duration::from_secs(1);
+const RETRY_INTERVAL: Duration = Duration::from_secs(1);
 
 /// A source of images.
 pub(crate) trait FrameSource {
@@ -66,14 +66,14 @@ impl SharedFrame {
                 reported = message;
             }
             // Ended by `drop`.
-            let _ = self.changed.wait_timeout_while(self.lock(), RETRY, |state| !state.ends);
+            let _ = self.changed.wait_timeout_while(self.lock(), RETRY_INTERVAL, |state| !state.ends);
         }
     }
 
     fn take_frames(&self, source: &mut impl FrameSource, time: impl Fn() -> Duration) -> Result<()> {
         let mut last = time();
         loop {
-            let frame = source.next_frame(WAIT)?;
+            let frame = source.next_frame(IMAGE_TIMEOUT)?;
             let now = time();
             // A damaged image takes less time than a wait.
             if frame.is_some() {

@@ -15,10 +15,10 @@ use crate::kinematics::{self, JointAngles, NaoCamera, Side};
 use crate::video_device::VideoDevice;
 
 /// The options of the cameras.
-pub(crate) const TOP: &str = "camera_top";
-pub(crate) const BOTTOM: &str = "camera_bottom";
-pub(crate) const TURNED: &str = "camera_top_turned";
-pub(crate) const TODAY: &str = "objects_of_today";
+pub(crate) const TOP_OPTION: &str = "camera_top";
+pub(crate) const BOTTOM_OPTION: &str = "camera_bottom";
+pub(crate) const TURNED_OPTION: &str = "camera_top_turned";
+pub(crate) const TODAY_OPTION: &str = "objects_of_today";
 
 /// The poses of the cameras on the body; by default those of a Nao V6.
 #[derive(Clone, PartialEq, Eq, Debug)]
@@ -50,10 +50,10 @@ impl CameraPlaces {
     pub(crate) fn of(options: &BTreeMap<String, String>) -> CameraPlaces {
         let usual = CameraPlaces::default();
         CameraPlaces {
-            top: options.get(TOP).map_or(usual.top, PathBuf::from),
-            bottom: options.get(BOTTOM).map_or(usual.bottom, PathBuf::from),
-            is_top_turned: options.get(TURNED).is_none_or(|flag| flag != "0"),
-            objects: match options.get(TODAY).is_some_and(|flag| flag == "1") {
+            top: options.get(TOP_OPTION).map_or(usual.top, PathBuf::from),
+            bottom: options.get(BOTTOM_OPTION).map_or(usual.bottom, PathBuf::from),
+            is_top_turned: options.get(TURNED_OPTION).is_none_or(|flag| flag != "0"),
+            objects: match options.get(TODAY_OPTION).is_some_and(|flag| flag == "1") {
                 true => ObjectSet::OfToday,
                 false => ObjectSet::Of2010,
             },
@@ -63,7 +63,7 @@ impl CameraPlaces {
     /// The cameras that cannot be used now, each with the reason and the option that names another
     /// device.
     pub(crate) fn missing(&self) -> Vec<String> {
-        let cameras = [("upper", TOP, &self.top), ("lower", BOTTOM, &self.bottom)];
+        let cameras = [("upper", TOP_OPTION, &self.top), ("lower", BOTTOM_OPTION, &self.bottom)];
         let opened = cameras.into_iter().map(|(name, option, path)| (name, option, open(path)));
         let missing = opened.filter_map(|(name, option, opened)| {
             let why = opened.err()?;
@@ -137,8 +137,8 @@ impl Cameras {
                 streamed.map_err(|error| std::io::Error::other(error.to_string()))
             })
         };
-        let top = thread(TOP, &places.top, places.is_top_turned)?;
-        let threads = [top, thread(BOTTOM, &places.bottom, false)?];
+        let top = thread(TOP_OPTION, &places.top, places.is_top_turned)?;
+        let threads = [top, thread(BOTTOM_OPTION, &places.bottom, false)?];
         Ok(Cameras { threads, pair: FramePair::default(), objects: places.objects })
     }
 
@@ -200,9 +200,9 @@ struct NewestFrame {
 }
 
 /// The time between two images until it is known.
-const PERIOD: Duration = Duration::from_millis(33);
+const DEFAULT_PERIOD: Duration = Duration::from_millis(33);
 /// The periods without an image after which the other camera's images are delivered alone.
-const SILENT: u32 = 3;
+const MAX_MISSED_PERIODS: u32 = 3;
 
 impl NewestFrame {
     fn add(&mut self, frame: Frame) {
@@ -213,8 +213,10 @@ impl NewestFrame {
 
     /// Whether the camera has delivered an image recently.
     fn is_silent(&self, now: Duration) -> bool {
-        self.last
-            .is_none_or(|last| now.saturating_sub(last) > SILENT * self.period.unwrap_or(PERIOD).max(PERIOD))
+        self.last.is_none_or(|last| {
+            now.saturating_sub(last)
+                > MAX_MISSED_PERIODS * self.period.unwrap_or(DEFAULT_PERIOD).max(DEFAULT_PERIOD)
+        })
     }
 }
 
@@ -227,7 +229,7 @@ impl FramePair {
             let apart = one.taken_at.abs_diff(other.taken_at);
             let period = [&top.period, &bottom.period].into_iter().flatten().max().copied();
             let taken_at = one.taken_at.min(other.taken_at) + apart / 2;
-            if 2 * apart <= period.unwrap_or(PERIOD) {
+            if 2 * apart <= period.unwrap_or(DEFAULT_PERIOD) {
                 return Some((taken_at, [top.frame.take(), bottom.frame.take()]));
             }
         }
@@ -315,7 +317,7 @@ mod tests {
 
     #[test]
     fn missing_cameras_are_named_with_their_options() {
-        let options = [(TOP, "/dev/null"), (BOTTOM, "/nowhere/camera"), (TURNED, "0")];
+        let options = [(TOP_OPTION, "/dev/null"), (BOTTOM_OPTION, "/nowhere/camera"), (TURNED_OPTION, "0")];
         let options = options.map(|(name, value)| (name.to_owned(), value.to_owned())).into();
         let places = CameraPlaces::of(&options);
         assert!(!places.is_top_turned && CameraPlaces::default().is_top_turned);

@@ -19,9 +19,9 @@ use crate::walk::{SteppingWalk, WalkEngine, WalkVelocity, displacement};
 /// Stiffness of the joints in motion.
 const STIFFNESS: f64 = 0.8;
 /// The time in which the joints become stiff and the robot moves into its stand, s.
-const STIFFENING: f64 = 1.0;
+const STIFFENING_TIME: f64 = 1.0;
 /// The time in which the joints lose their stiffness, s.
-const RELAXING: f64 = 0.5;
+const RELAXING_TIME: f64 = 0.5;
 /// Largest distance of a joint from the last pose of a skill that has been performed, rad.
 const POSE_TOLERANCE: f64 = 0.3;
 /// Least weight on both soles of a robot that stands on the ground, kg.
@@ -112,7 +112,8 @@ impl NaoControl {
         let measured = packet.position.map(f64::from);
         if matches!(self.state, BodyState::Waiting) {
             (self.measured, self.angles) = (measured, measured);
-            self.state = BodyState::Stiffening { motion: Motion::stand(measured, STIFFENING), elapsed: 0.0 };
+            self.state =
+                BodyState::Stiffening { motion: Motion::stand(measured, STIFFENING_TIME), elapsed: 0.0 };
         }
         self.measured_before = std::mem::replace(&mut self.measured, measured);
         let [roll, pitch] = packet.angles.map(f64::from);
@@ -153,7 +154,7 @@ impl NaoControl {
             BodyState::Waiting => (0.0, true),
             BodyState::Stiffening { motion, elapsed } => {
                 *elapsed += seconds;
-                let part = (*elapsed / STIFFENING).min(1.0);
+                let part = (*elapsed / STIFFENING_TIME).min(1.0);
                 if motion.advance(seconds, falls, &mut self.angles) {
                     self.state = BodyState::Active { skill: None };
                 }
@@ -183,7 +184,7 @@ impl NaoControl {
             }
             BodyState::Relaxing { elapsed } => {
                 *elapsed += seconds;
-                let part = 1.0 - *elapsed / RELAXING;
+                let part = 1.0 - *elapsed / RELAXING_TIME;
                 (part.max(0.0) * STIFFNESS, part <= 0.0)
             }
         }
@@ -264,7 +265,7 @@ impl NaoControl {
 
     /// Whether the robot rests and its joints have lost their stiffness.
     pub(crate) fn is_relaxed(&self) -> bool {
-        matches!(self.state, BodyState::Relaxing { elapsed } if elapsed >= RELAXING)
+        matches!(self.state, BodyState::Relaxing { elapsed } if elapsed >= RELAXING_TIME)
     }
 
     fn has_weight(&self) -> bool {
@@ -354,7 +355,7 @@ impl NaoControl {
             charge,
             current,
             temperature,
-            charging: (status as i32) & CHARGING != 0,
+            charging: (status as i32) & CHARGING_BIT != 0,
         });
     }
 
@@ -376,7 +377,7 @@ impl NaoControl {
 }
 
 /// The bit in the status of the battery that says it is charging.
-const CHARGING: i32 = 0x80;
+const CHARGING_BIT: i32 = 0x80;
 
 /// Replaces the values of a list in its memory.
 fn refill(list: &mut Vec<f64>, values: impl IntoIterator<Item = f64>) {

@@ -22,9 +22,9 @@ const LOST_AFTER: u32 = 84;
 /// How long a body waits for its first sensors when it is opened.
 const FIRST_PACKET: Duration = Duration::from_secs(5);
 /// The pause between two attempts to connect.
-const RETRY: Duration = Duration::from_millis(100);
+const RETRY_INTERVAL: Duration = Duration::from_millis(100);
 /// The most bytes that a radio message has; the league's limit.
-const RADIO: usize = 128;
+const MAX_RADIO_MESSAGE: usize = 128;
 
 /// A Nao at a LoLA socket.
 ///
@@ -116,7 +116,7 @@ impl Nao {
             return Err(Error::new(ErrorKind::Disconnected, message));
         }
         nao.channels = RobotChannels::connect(path)?;
-        nao.anatomy.radio = if nao.channels.is_some() { RADIO } else { 0 };
+        nao.anatomy.radio = if nao.channels.is_some() { MAX_RADIO_MESSAGE } else { 0 };
         Ok(nao)
     }
 
@@ -147,7 +147,7 @@ impl SharedControl {
                 return;
             }
             // Ended by `drop`.
-            let _ = self.changed.wait_timeout_while(state, RETRY, |state| !state.ends);
+            let _ = self.changed.wait_timeout_while(state, RETRY_INTERVAL, |state| !state.ends);
         }
     }
 

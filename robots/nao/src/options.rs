@@ -3,7 +3,7 @@
 use monas_robot::{BodyOption, OptionKind};
 
 use crate::anatomy::{ANATOMY, anatomy};
-use crate::cameras::{BOTTOM, TODAY, TOP, TURNED};
+use crate::cameras::{BOTTOM_OPTION, TODAY_OPTION, TOP_OPTION, TURNED_OPTION};
 use crate::motions::{DIVE, FALL, KICK, STAND_UP};
 
 /// The kind of an option that names a special action.
@@ -11,15 +11,15 @@ const POSES: OptionKind = OptionKind::Poses(anatomy);
 
 /// All options.
 pub(crate) const OPTIONS: &[BodyOption] = &[
-    option(TOP, OptionKind::Text, "the device of the upper camera; by default `/dev/video-top`"),
-    option(BOTTOM, OptionKind::Text, "the device of the lower camera; by default `/dev/video-bottom`"),
+    option(TOP_OPTION, OptionKind::Text, "the device of the upper camera; by default `/dev/video-top`"),
+    option(BOTTOM_OPTION, OptionKind::Text, "the device of the lower camera; by default `/dev/video-bottom`"),
     option(
-        TURNED,
+        TURNED_OPTION,
         OptionKind::Flag,
         "`0` if the upper camera's images are upright; by default they are turned, since it is mounted upside down",
     ),
     option(
-        TODAY,
+        TODAY_OPTION,
         OptionKind::Flag,
         "`1` if the ball is black and white and the goals are white; by default they are of 2010",
     ),

@@ -56,7 +56,7 @@ pub(crate) struct RobotChannels {
 }
 
 /// The endings of the paths of the three sockets, after the path of LoLA's.
-const ENDINGS: [&str; 3] = ["simulated_camera", "simulated_referee", "simulated_radio"];
+const SOCKET_SUFFIXES: [&str; 3] = ["simulated_camera", "simulated_referee", "simulated_radio"];
 
 /// The path of one of the three sockets.
 fn path(lola: &Path, ending: &str) -> PathBuf {
@@ -67,13 +67,13 @@ fn path(lola: &Path, ending: &str) -> PathBuf {
 
 /// Whether a simulation offers the sockets beside the one of LoLA.
 pub(crate) fn are_offered(lola: &Path) -> bool {
-    ENDINGS.iter().all(|ending| path(lola, ending).exists())
+    SOCKET_SUFFIXES.iter().all(|ending| path(lola, ending).exists())
 }
 
 impl SimulatedChannels {
     /// Listens beside the socket of LoLA.
     pub(crate) fn listen(lola: &Path) -> Result<SimulatedChannels, Error> {
-        let [camera, referee, radio] = ENDINGS.map(|ending| Socket::listen(&path(lola, ending)));
+        let [camera, referee, radio] = SOCKET_SUFFIXES.map(|ending| Socket::listen(&path(lola, ending)));
         Ok(SimulatedChannels {
             camera: MessageSocket::new(camera?),
             referee: MessageSocket::new(referee?),
@@ -89,7 +89,8 @@ impl RobotChannels {
         if !are_offered(lola) {
             return Ok(None);
         }
-        let [camera, referee, radio] = ENDINGS.map(|ending| Socket::connect_if_served(&path(lola, ending)));
+        let [camera, referee, radio] =
+            SOCKET_SUFFIXES.map(|ending| Socket::connect_if_served(&path(lola, ending)));
         let (Some(camera), Some(referee), Some(radio)) = (camera?, referee?, radio?) else {
             return Ok(None);
         };
@@ -157,7 +158,7 @@ mod tests {
     fn files_that_nobody_serves_are_no_channels() {
         let folder = tempfile::tempdir().unwrap();
         let lola = folder.path().join("lola");
-        for ending in ENDINGS {
+        for ending in SOCKET_SUFFIXES {
             drop(std::os::unix::net::UnixListener::bind(path(&lola, ending)).unwrap());
         }
         assert!(are_offered(&lola) && RobotChannels::connect(&lola).unwrap().is_none());

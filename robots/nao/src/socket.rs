@@ -17,7 +17,7 @@ use crate::lola::Decoded;
 const MOST_BYTES: usize = 1 << 21;
 
 /// A connection on which nothing arrives for this time has ended.
-const SILENCE: Duration = Duration::from_secs(1);
+const RECEIVE_TIMEOUT: Duration = Duration::from_secs(1);
 
 /// One end of a connection, or a listener for one.
 pub(crate) struct Socket {
@@ -97,7 +97,7 @@ impl Socket {
         let socket = Socket::connect(path)?;
         if let Some(stream) = &socket.stream {
             stream.set_nonblocking(false).map_err(failed)?;
-            stream.set_read_timeout(Some(SILENCE)).map_err(failed)?;
+            stream.set_read_timeout(Some(RECEIVE_TIMEOUT)).map_err(failed)?;
         }
         Ok(Socket { waits: true, ..socket })
     }

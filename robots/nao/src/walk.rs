@@ -38,13 +38,13 @@ pub(crate) const TORSO_HEIGHT: f64 = 0.308;
 /// Half the distance between the feet, m.
 const HALF_STANCE: f64 = 0.05;
 /// How far a foot is lifted, m.
-const LIFT: f64 = 0.02;
+const FOOT_LIFT: f64 = 0.02;
 /// The cycles of one step: 21 of 12 ms are a quarter of a second.
 const STEP_CYCLES: u32 = 21;
 /// The greatest velocities: ahead, backwards, sideways, turning.
-const FASTEST: [f64; 4] = [0.3, 0.15, 0.15, 1.2];
+const MAX_VELOCITIES: [f64; 4] = [0.3, 0.15, 0.15, 1.2];
 /// The greatest changes of velocity, m/s2 and rad/s2.
-const ACCELERATION: (f64, f64) = (0.6, 4.0);
+const MAX_ACCELERATIONS: (f64, f64) = (0.6, 4.0);
 /// How fast the toes return to where they should be in a step, 1/s. The torso sways by it, without
 /// a turn in the long run.
 const TOES_RETURN: f64 = 2.0;
@@ -125,7 +125,7 @@ impl WalkEngine for SteppingWalk {
 
 impl SteppingWalk {
     fn accelerate(&mut self, wanted: WalkVelocity, seconds: f64) {
-        let (linear, angular) = ACCELERATION;
+        let (linear, angular) = MAX_ACCELERATIONS;
         let change = (wanted.x - self.velocity.x, wanted.y - self.velocity.y);
         let size = libm::hypot(change.0, change.1);
         let part = if size > linear * seconds { linear * seconds / size } else { 1.0 };
@@ -169,7 +169,7 @@ impl SteppingWalk {
             // One motor turns the toes of both feet.
             heading: opposite,
         };
-        LIFT * libm::sin(std::f64::consts::PI * part)
+        FOOT_LIFT * libm::sin(std::f64::consts::PI * part)
     }
 
     /// The feet swap roles; the walk ends once both feet are in their positions of a stand.
@@ -209,7 +209,7 @@ fn limited(wanted: WalkVelocity) -> WalkVelocity {
     let finite = |value: f64| if value.is_finite() { value } else { 0.0 };
     let WalkVelocity { x, y, turn } = wanted;
     let (x, y, turn) = (finite(x), finite(y), finite(turn));
-    let [ahead, backwards, sideways, around] = FASTEST;
+    let [ahead, backwards, sideways, around] = MAX_VELOCITIES;
     let along = if x >= 0.0 { ahead } else { backwards };
     let effort =
         ((x / along) * (x / along) + (y / sideways) * (y / sideways) + (turn / around) * (turn / around))
@@ -243,7 +243,7 @@ mod tests {
     fn walk(engine: &mut SteppingWalk, wanted: WalkVelocity, seconds: f64) -> [f64; 3] {
         let mut angles = [0.0; JOINTS];
         // The foot that swings is as high as in the middle of its way.
-        engine.clone().place_feet(if engine.moving { LIFT } else { 0.0 }, &mut angles);
+        engine.clone().place_feet(if engine.moving { FOOT_LIFT } else { 0.0 }, &mut angles);
         let mut pose = [0.0; 3];
         for _ in 0..(seconds / CYCLE_SECONDS).round() as usize {
             let before = angles;

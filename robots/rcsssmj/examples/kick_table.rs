@@ -20,14 +20,14 @@ use rand_pcg::Pcg32;
 /// Kicks of each row, by each foot the half of them.
 const KICKS: u32 = 10;
 /// By how much the ball lies beside the place for the kick, m, one row for each.
-const BESIDE: [f64; 4] = [0.0, 0.02, 0.04, 0.06];
+const LATERAL_OFFSETS: [f64; 4] = [0.0, 0.02, 0.04, 0.06];
 /// The position of the robot, m.
-const PLACE: [f64; 2] = [-12.0, 0.0];
+const ROBOT_POSITION: [f64; 2] = [-12.0, 0.0];
 /// Cycles before a kick, and those in which the ball rolls after it.
-const STAND: u32 = 100;
-const ROLLING: u32 = 250;
+const STAND_CYCLES: u32 = 100;
+const ROLLING_CYCLES: u32 = 250;
 /// Between two places of the ball for its speed, s.
-const SPAN: f64 = 0.2;
+const SPEED_INTERVAL: f64 = 0.2;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut arguments = std::env::args().skip(1).peekable();
@@ -40,7 +40,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut chance = Pcg32::seed_from_u64(1);
     println!("| ball beside its place, m | hit | distance, m | fastest, m/s | direction, deg | falls |");
     println!("|---|---|---|---|---|---|");
-    for beside in BESIDE {
+    for beside in LATERAL_OFFSETS {
         let mut kicks = Vec::new();
         for kick in 0..KICKS {
             let mut spread = || beside * (2.0 * f64::from(chance.next_u32()) / f64::from(u32::MAX) - 1.0);
@@ -105,23 +105,23 @@ impl Table {
         let side = if skill == Skill::KickLeft { 1.0 } else { -1.0 };
         // Far from where it stood before, so that the body notices that it was placed.
         let height = (robot.straight_height() * 100.0).ceil() / 100.0;
-        let place = [PLACE[0], PLACE[1] + side, height];
+        let place = [ROBOT_POSITION[0], ROBOT_POSITION[1] + side, height];
         let ball =
             [place[0] + robot.hips().x + kick.ball_x + beside[0], place[1] + side * kick.ball_y + beside[1]];
         let mut command = Actuators { skill_number: self.skill, ..Actuators::default() };
-        for _ in 0..STAND {
+        for _ in 0..STAND_CYCLES {
             self.cycle(&command)?;
         }
         let team = "Monas".to_owned();
         self.body.instruct(Command::PlaceRobot { team, number: 2, at: place, heading: 0.0 });
         self.body.instruct(Command::PlaceBall { at: [ball[0], ball[1], 0.11], velocity: [0.0; 3] });
-        for _ in 0..STAND {
+        for _ in 0..STAND_CYCLES {
             self.cycle(&command)?;
         }
         self.skill += 1;
         (command.skill, command.skill_number) = (skill as i32, self.skill);
         let (mut places, mut fell, mut rolling) = (vec![(0.0, ball)], false, 0);
-        while rolling < ROLLING {
+        while rolling < ROLLING_CYCLES {
             self.cycle(&command)?;
             fell |= self.body.is_fallen();
             rolling += u32::from(fell || self.percepts.sensors.skill_done == self.skill);
@@ -129,7 +129,7 @@ impl Table {
         }
         let way = |from: [f64; 2], to: [f64; 2]| libm::hypot(to[0] - from[0], to[1] - from[1]);
         let speed = |(at, (time, place)): (usize, &(f64, [f64; 2]))| {
-            let later = places[at..].iter().find(|(later, _)| *later >= time + SPAN)?;
+            let later = places[at..].iter().find(|(later, _)| *later >= time + SPEED_INTERVAL)?;
             Some(way(*place, later.1) / (later.0 - time))
         };
         let speed = places.iter().enumerate().skip(1).filter_map(speed).fold(0.0, f64::max);

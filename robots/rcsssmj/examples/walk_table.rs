@@ -18,7 +18,7 @@ use monas_robot::{Actuators, BodySite, Percepts, Robot};
 use narukom::Timestamp;
 
 /// Speeds ahead, to the left, and rates of turning.
-const POLICY: [[f64; 3]; 12] = [
+const POLICY_VELOCITIES: [[f64; 3]; 12] = [
     [0.0, 0.0, 0.0],
     [0.25, 0.0, 0.0],
     [0.5, 0.0, 0.0],
@@ -32,7 +32,7 @@ const POLICY: [[f64; 3]; 12] = [
     [0.3, 0.2, 0.0],
     [0.0, 0.2, -0.5],
 ];
-const OWN: [[f64; 3]; 12] = [
+const SINE_WALK_VELOCITIES: [[f64; 3]; 12] = [
     [0.0, 0.0, 0.0],
     [0.15, 0.0, 0.0],
     [0.3, 0.0, 0.0],
@@ -49,20 +49,21 @@ const OWN: [[f64; 3]; 12] = [
 
 /// Trials of each row, and the cycles by which their stands differ.
 const TRIALS: u32 = 4;
-const LONGER: u32 = 7;
+const TRIAL_OFFSET: u32 = 7;
 /// Cycles of the stand, of the start and of the measurement.
-const STAND: u32 = 100;
-const START: u32 = 100;
-const MEASURED: u32 = 500;
+const STAND_CYCLES: u32 = 100;
+const START_CYCLES: u32 = 100;
+const MEASURED_CYCLES: u32 = 500;
 /// Cycles between two changes of the last row, and their number.
-const CHANGE: u32 = 107;
+const CYCLES_PER_CHANGE: u32 = 107;
 const CHANGES: u32 = 36;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut arguments = std::env::args().skip(1).peekable();
     let robot = arguments.next_if_eq("--robot").and_then(|_| arguments.next());
     let policy = arguments.next();
-    let (name, commands): (_, &[_]) = if policy.is_some() { ("policy", &POLICY) } else { ("own", &OWN) };
+    let (name, commands): (_, &[_]) =
+        if policy.is_some() { ("policy", &POLICY_VELOCITIES) } else { ("own", &SINE_WALK_VELOCITIES) };
     let mut options = BTreeMap::from([("kick_off".to_owned(), "0".to_owned())]);
     options.extend(robot.map(|name| ("robot".to_owned(), name)));
     options.extend(policy.map(|file| ("policy".to_owned(), file)));
@@ -75,8 +76,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let mut row = Row::default();
         for trial in 0..TRIALS {
             table.stand(trial)?;
-            table.walk(*command, START, &mut Row::default(), &mut row)?;
-            table.walk(*command, MEASURED, &mut row, &mut Row::default())?;
+            table.walk(*command, START_CYCLES, &mut Row::default(), &mut row)?;
+            table.walk(*command, MEASURED_CYCLES, &mut row, &mut Row::default())?;
         }
         println!("| {name} | {} | {row} |", rates(*command));
         (falls, cycles) = (falls + row.falls, cycles + row.walked);
@@ -88,7 +89,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let command =
             if change % 2 == 1 { [0.0; 3] } else { commands[(change * 5 / 2) as usize % commands.len()] };
         let falls = changes.falls;
-        table.walk(command, CHANGE - change % 30, &mut Row::default(), &mut changes)?;
+        table.walk(command, CYCLES_PER_CHANGE - change % 30, &mut Row::default(), &mut changes)?;
         if changes.falls > falls {
             table.stand(0)?;
         }
@@ -144,11 +145,11 @@ impl Table {
         let height = (self.body.robot().straight_height() * 100.0).ceil() / 100.0;
         let (team, at) = ("Monas".to_owned(), [-12.0, 5.0, height]);
         // The walk commands the joints of a robot that is placed while walking.
-        for _ in 0..STAND {
+        for _ in 0..STAND_CYCLES {
             self.cycle(&Actuators::default())?;
         }
         self.body.instruct(Command::PlaceRobot { team, number: 2, at, heading: 0.0 });
-        for _ in 0..STAND + trial * LONGER {
+        for _ in 0..STAND_CYCLES + trial * TRIAL_OFFSET {
             self.cycle(&Actuators::default())?;
         }
         Ok(())

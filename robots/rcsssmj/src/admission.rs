@@ -20,16 +20,16 @@ use crate::server::Server;
 
 /// The cycle whose percepts the player receives first. Monitors receive the state after a cycle
 /// with an odd number.
-const FIRST: u64 = 1001;
+const FIRST_CYCLE: u64 = 1001;
 /// The number of attempts to start a server and to join it in time.
-const ATTEMPTS: u32 = 10;
+const MAX_ATTEMPTS: u32 = 10;
 /// The time for the server to reach the point where it waits for an agent, and to admit another
 /// agent meanwhile. Each further attempt adds this time, for busy computers.
 const TAKING_IN: Duration = Duration::from_millis(60);
 /// The time for the server to send what it has already computed.
-const SENDING: Duration = Duration::from_secs(2);
+const SEND_TIMEOUT: Duration = Duration::from_secs(2);
 /// The middle of a ball on the centre spot, m.
-const CENTRE: [f64; 3] = [0.0, 0.0, 0.11];
+const BALL_ON_CENTRE_SPOT: [f64; 3] = [0.0, 0.0, 0.11];
 
 /// A server with the player, which has not answered its first percepts yet.
 pub(crate) struct Admission {
@@ -43,7 +43,7 @@ impl Admission {
     /// # Errors
     /// The server cannot be started, or no attempt joins it in time.
     pub(crate) fn new(options: &Options) -> Result<Admission, Error> {
-        for attempt in 1..=ATTEMPTS {
+        for attempt in 1..=MAX_ATTEMPTS {
             let mut server = Server::start(options.server.as_deref(), true)?;
             // Connected before the first cycle: the threads of a busy server wait for each other.
             let holder = server.agent()?;
@@ -52,12 +52,12 @@ impl Admission {
                 return Ok(Admission { server, player });
             }
         }
-        let what = format!("the server was not joined within {FIRST} cycles, {ATTEMPTS} times");
+        let what = format!("the server was not joined within {FIRST_CYCLE} cycles, {MAX_ATTEMPTS} times");
         Err(Error::disconnected(format!("{what}; is the computer very busy?")))
     }
 }
 
-/// Joins so that the player's first percepts are those of [`FIRST`]; none if it was missed.
+/// Joins so that the player's first percepts are those of [`FIRST_CYCLE`]; none if it was missed.
 fn join(
     server: &Server,
     mut holder: Connection,
@@ -69,30 +69,30 @@ fn join(
     let number = if options.number > 1 { options.number - 1 } else { 2 };
     init(&mut holder, options, number)?;
     let mut cycle = holder.receive(|message| cycle(message, options.robot))?;
-    if cycle > FIRST - 2 {
+    if cycle > FIRST_CYCLE - 2 {
         return Ok(None);
     }
-    while cycle < FIRST - 2 {
+    while cycle < FIRST_CYCLE - 2 {
         cycle = hold(&mut holder, options.robot)?;
         monitor.drain()?;
     }
     // The server finds new agents when it begins a cycle. It has begun the next one, and not the
     // one after it, once it waits for the holder's answer.
-    monitor.wait_beyond(time(FIRST - 2))?;
+    monitor.wait_beyond(time(FIRST_CYCLE - 2))?;
     pause(taking_in);
     let mut player = Connection::open(server.agents())?;
     init(&mut player, options, options.number)?;
     pause(taking_in);
     hold(&mut holder, options.robot)?;
     hold(&mut holder, options.robot)?;
-    let Some(message) = player.receive_within(SENDING)? else { return Ok(None) };
-    if self::cycle(message, options.robot)? != FIRST {
+    let Some(message) = player.receive_within(SEND_TIMEOUT)? else { return Ok(None) };
+    if self::cycle(message, options.robot)? != FIRST_CYCLE {
         return Ok(None);
     }
     // The server now waits for the answers, and processes what arrives in the next cycle.
-    monitor.wait_beyond(time(FIRST))?;
+    monitor.wait_beyond(time(FIRST_CYCLE))?;
     holder.finish()?;
-    monitor.send(&Command::PlaceBall { at: CENTRE, velocity: [0.0; 3] })?;
+    monitor.send(&Command::PlaceBall { at: BALL_ON_CENTRE_SPOT, velocity: [0.0; 3] })?;
     monitor.finish()?;
     Ok(Some(player))
 }

@@ -16,18 +16,18 @@ use crate::percept::{PlayMode, Side};
 use crate::server::Server;
 
 /// The usual address of a server for agents.
-pub(crate) const ADDRESS: &str = "127.0.0.1:60000";
+pub(crate) const DEFAULT_ADDRESS: &str = "127.0.0.1:60000";
 /// Displacement of the torso in one cycle beyond which the robot counts as placed, m.
-const JUMP: f64 = 0.2;
+const MAX_DISPLACEMENT: f64 = 0.2;
 /// Time for which a robot lies before it is picked up, s.
-const LYING: f64 = 5.0;
+const MAX_LYING_TIME: f64 = 5.0;
 /// Distance from the place where a robot fell to where it is put on its feet, m: behind it, not on
 /// the ball.
-const BEHIND: f64 = 0.7;
+const PLACEMENT_DISTANCE: f64 = 0.7;
 /// The cycles for a robot to come to a stand before the kick-off.
-const SETTLING: u32 = 100;
+const SETTLING_CYCLES: u32 = 100;
 /// The cycles until a command of the monitor shows its effect, at most.
-const TIMEOUT: u32 = 250;
+const TIMEOUT_CYCLES: u32 = 250;
 /// The cycles for the server to admit a monitor.
 const TAKING_IN: u32 = 25;
 
@@ -157,7 +157,7 @@ impl Booster {
         // A robot dropped from a height may tip over.
         let is_caught = self.robot.placed_height > self.robot.straight_height && self.has_monitor();
         self.message.clear();
-        self.message.beam(if is_caught { x - BEHIND } else { x }, y, heading);
+        self.message.beam(if is_caught { x - PLACEMENT_DISTANCE } else { x }, y, heading);
         self.answer()?;
         self.connection.receive(|_| Ok(()))?;
         self.exchange()?;
@@ -165,7 +165,7 @@ impl Booster {
         if is_caught {
             self.put_up(options.start.for_team(self.rules.side));
         }
-        for _ in 0..SETTLING {
+        for _ in 0..SETTLING_CYCLES {
             self.exchange()?;
         }
         if options.kick_off && self.has_monitor() {
@@ -177,7 +177,7 @@ impl Booster {
     /// Gives the own team the kick-off and waits until the state of the game shows it.
     fn kick_off(&mut self) -> Result<(), Error> {
         self.instruct(Command::KickOff(self.rules.side));
-        for _ in 0..TIMEOUT {
+        for _ in 0..TIMEOUT_CYCLES {
             if self.control.percept().game.play_mode != PlayMode::BeforeKickOff {
                 return Ok(());
             }
@@ -246,7 +246,7 @@ impl Booster {
         let position = self.true_position();
         let jump = libm::hypot(position[0] - self.before[0], position[1] - self.before[1]);
         self.before = position;
-        if jump > JUMP {
+        if jump > MAX_DISPLACEMENT {
             self.control.placed();
             self.rules.placed(FieldPose { x: position[0], y: position[1], heading: self.true_heading() });
         }
@@ -255,7 +255,7 @@ impl Booster {
     /// Puts a robot that has lain for a while on its feet, behind where it fell.
     fn pick_up(&mut self) {
         self.lying = if self.control.is_fallen() { self.lying + 1 } else { 0 };
-        if !self.pick_up || f64::from(self.lying) * CYCLE_SECONDS < LYING {
+        if !self.pick_up || f64::from(self.lying) * CYCLE_SECONDS < MAX_LYING_TIME {
             return;
         }
         self.lying = 0;
@@ -264,7 +264,7 @@ impl Booster {
             Side::Right => (-1.0, std::f64::consts::PI),
         };
         let [x, y, _] = self.true_position();
-        self.put_up(FieldPose { x: x - ahead * BEHIND, y, heading });
+        self.put_up(FieldPose { x: x - ahead * PLACEMENT_DISTANCE, y, heading });
     }
 
     /// Makes the monitor put the robot on its feet, at a pose on the field. The robot notices the

@@ -8,13 +8,13 @@ use crate::error::Error;
 use crate::frame::{self, FrameReader};
 
 /// The time limit of an attempt to connect.
-const CONNECTING: Duration = Duration::from_secs(2);
+const CONNECT_TIMEOUT: Duration = Duration::from_secs(2);
 /// A connection on which an awaited message does not arrive for this time counts as ended. The
 /// server waits five seconds for an agent itself, and compiles its world anew when robots come and
 /// go.
-const SILENCE: Duration = Duration::from_secs(20);
+const RECEIVE_TIMEOUT: Duration = Duration::from_secs(20);
 /// The time limit for sending a message.
-const SENDING: Duration = Duration::from_secs(5);
+const SEND_TIMEOUT: Duration = Duration::from_secs(5);
 
 /// A connection to one of the server's ports.
 #[derive(Debug)]
@@ -32,11 +32,11 @@ impl Connection {
             |error: std::io::Error| Error::disconnected(format!("{address} does not answer: {error}"));
         let mut last = None;
         for place in address.to_socket_addrs().map_err(failed)? {
-            match TcpStream::connect_timeout(&place, CONNECTING) {
+            match TcpStream::connect_timeout(&place, CONNECT_TIMEOUT) {
                 Ok(stream) => {
                     stream.set_nodelay(true).map_err(failed)?;
-                    stream.set_read_timeout(Some(SILENCE)).map_err(failed)?;
-                    stream.set_write_timeout(Some(SENDING)).map_err(failed)?;
+                    stream.set_read_timeout(Some(RECEIVE_TIMEOUT)).map_err(failed)?;
+                    stream.set_write_timeout(Some(SEND_TIMEOUT)).map_err(failed)?;
                     let (reader, bytes) = (FrameReader::default(), Vec::new());
                     return Ok(Connection { stream, reader, bytes, waits: true });
                 }
@@ -81,7 +81,7 @@ impl Connection {
                 Err(_) => return Ok(None),
             }
         }
-        self.stream.set_read_timeout(Some(SILENCE)).map_err(|error| ended(&error.to_string()))?;
+        self.stream.set_read_timeout(Some(RECEIVE_TIMEOUT)).map_err(|error| ended(&error.to_string()))?;
         self.reader.next_message()
     }
 
@@ -127,7 +127,7 @@ impl Connection {
             Err(error) if error.kind() == ErrorKind::Interrupted => Ok(true),
             Err(error) if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut) => {
                 match self.waits {
-                    true => Err(ended(&format!("nothing has arrived for {} s", SILENCE.as_secs()))),
+                    true => Err(ended(&format!("nothing has arrived for {} s", RECEIVE_TIMEOUT.as_secs()))),
                     false => Ok(false),
                 }
             }

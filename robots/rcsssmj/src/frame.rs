@@ -3,7 +3,7 @@
 use crate::error::Error;
 
 /// The longest message that is accepted, bytes. The first one to a monitor has about 20 000.
-pub const LONGEST: usize = 1 << 20;
+pub const MAX_MESSAGE_SIZE: usize = 1 << 20;
 
 /// Appends a message with its length.
 pub fn write(message: &[u8], bytes: &mut Vec<u8>) {
@@ -30,7 +30,7 @@ impl FrameReader {
     /// The next complete message; none until it has arrived as a whole.
     ///
     /// # Errors
-    /// The message is longer than [`LONGEST`]. The connection is then unusable.
+    /// The message is longer than [`MAX_MESSAGE_SIZE`]. The connection is then unusable.
     pub fn next_message(&mut self) -> Result<Option<&[u8]>, Error> {
         let Some(length) = self.length()? else { return Ok(None) };
         let begin = self.start + 4;
@@ -52,9 +52,9 @@ impl FrameReader {
             return Ok(None);
         };
         let length = u32::from_be_bytes(*length) as usize;
-        if length > LONGEST {
+        if length > MAX_MESSAGE_SIZE {
             return Err(Error::protocol(format!(
-                "a message of {length} bytes was announced, {LONGEST} are the most"
+                "a message of {length} bytes was announced, {MAX_MESSAGE_SIZE} are the most"
             )));
         }
         Ok((rest.len() >= length).then_some(length))

@@ -32,7 +32,7 @@ pub(crate) const LEFT_SHOULDER_ROLL: usize = 3;
 pub(crate) const RIGHT_SHOULDER_ROLL: usize = 7;
 
 /// The joint that some robots lack.
-const WAIST: usize = 10;
+const WAIST_JOINT: usize = 10;
 
 /// The names of the joints, and of their motors and perceptors at the server.
 const CHANNELS: [(&str, &str, &str); JOINTS] = [
@@ -169,7 +169,7 @@ impl Humanoid {
 
     /// The name of the motor of a joint.
     pub(crate) fn motor(&self, joint: usize) -> &'static str {
-        let is_after_gap = self.waist.is_none() && joint >= WAIST;
+        let is_after_gap = self.waist.is_none() && joint >= WAIST_JOINT;
         CHANNELS[joint + usize::from(is_after_gap)].1
     }
 
@@ -177,8 +177,8 @@ impl Humanoid {
     pub(crate) fn of_perceptor(&self, name: &[u8]) -> Option<usize> {
         let channel = CHANNELS.iter().position(|(_, _, perceptor)| perceptor.as_bytes() == name)?;
         match (self.waist, channel) {
-            (None, WAIST) => None,
-            (None, after) if after > WAIST => Some(after - 1),
+            (None, WAIST_JOINT) => None,
+            (None, after) if after > WAIST_JOINT => Some(after - 1),
             _ => Some(channel),
         }
     }
@@ -232,7 +232,7 @@ mod tests {
             }
             assert_eq!(robot.of_perceptor(b"q_l4j1"), None);
         }
-        assert_eq!((T1.of_perceptor(b"q_tj1"), K1.of_perceptor(b"q_tj1")), (Some(WAIST), None));
+        assert_eq!((T1.of_perceptor(b"q_tj1"), K1.of_perceptor(b"q_tj1")), (Some(WAIST_JOINT), None));
     }
 
     #[test]

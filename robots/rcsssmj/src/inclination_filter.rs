@@ -4,9 +4,9 @@ use nalgebra::Vector3;
 
 /// The fraction of the error against the accelerometer that is corrected per second. It is small:
 /// steps shake the torso, so the accelerometer does not measure gravity alone.
-const CORRECTION: f64 = 0.4;
+const CORRECTION_RATE: f64 = 0.4;
 /// Range of the acceleration, m/s2, in which the accelerometer is taken to measure gravity.
-const TRUSTED: std::ops::Range<f64> = 8.0..12.0;
+const TRUSTED_ACCELERATIONS: std::ops::Range<f64> = 8.0..12.0;
 
 /// A complementary filter of the direction of gravity (Mahony, Hamel, Pflimlin, *Nonlinear
 /// Complementary Filters on the Special Orthogonal Group*, IEEE TAC 2008, section IV, without the
@@ -30,8 +30,8 @@ impl InclinationFilter {
         // A direction that is fixed in the world turns the other way in the torso.
         let turned = self.down - gyro.cross(&self.down) * seconds;
         let size = acceleration.norm();
-        let corrected = if TRUSTED.contains(&size) {
-            turned + (-acceleration / size - turned) * (CORRECTION * seconds)
+        let corrected = if TRUSTED_ACCELERATIONS.contains(&size) {
+            turned + (-acceleration / size - turned) * (CORRECTION_RATE * seconds)
         } else {
             turned
         };

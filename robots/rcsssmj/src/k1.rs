@@ -10,7 +10,7 @@ use nalgebra::Point3;
 use crate::humanoid::{Humanoid, read};
 
 /// From the axes of the ankle down to the sole: the middle of the foot's box and half its height.
-const SOLE: f64 = 0.038;
+const SOLE_HEIGHT: f64 = 0.038;
 
 /// The Booster K1: 22 joints, 1 m, 20 kg. It has no waist.
 pub static K1: Humanoid = Humanoid {
@@ -22,12 +22,12 @@ pub static K1: Humanoid = Humanoid {
     right_leg: 16,
     straight_height: 0.551_69,
     placed_height: 1.0,
-    sole: SOLE,
+    sole: SOLE_HEIGHT,
     corners: [
-        Point3::new(0.116, 0.035, -SOLE),
-        Point3::new(0.116, -0.035, -SOLE),
-        Point3::new(-0.064, 0.035, -SOLE),
-        Point3::new(-0.064, -0.035, -SOLE),
+        Point3::new(0.116, 0.035, -SOLE_HEIGHT),
+        Point3::new(0.116, -0.035, -SOLE_HEIGHT),
+        Point3::new(-0.064, 0.035, -SOLE_HEIGHT),
+        Point3::new(-0.064, -0.035, -SOLE_HEIGHT),
     ],
     hips: Point3::new(0.0, 0.0, -0.077),
     beside: 0.096,

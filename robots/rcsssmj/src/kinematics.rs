@@ -10,7 +10,7 @@ use crate::humanoid::{Humanoid, JOINTS, JointValues};
 use crate::percept::Polar;
 
 /// Rounds in which the place of a sole is approached: the axes of hip and ankle do not meet.
-const ROUNDS: usize = 5;
+const ITERATIONS: usize = 5;
 
 /// A foot.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -80,9 +80,9 @@ impl Humanoid {
         let first = self.leg(foot);
         let mut angles = [0.0; JOINTS];
         let mut target = *sole;
-        for round in 0..ROUNDS {
+        for round in 0..ITERATIONS {
             angles[first..first + 6].copy_from_slice(&self.closed_form(foot, &target));
-            if round + 1 < ROUNDS {
+            if round + 1 < ITERATIONS {
                 let missed = sole.translation.vector - self.sole_pose(foot, &angles).translation.vector;
                 target.translation.vector += missed;
             }

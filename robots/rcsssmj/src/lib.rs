@@ -104,7 +104,7 @@ fn has_own_time(settings: &BodySettings) -> bool {
 
 /// Whether a server answers at an address.
 fn probe(address: Option<&str>) -> Result<String, monas_robot::Error> {
-    let address = address.unwrap_or(body::ADDRESS);
+    let address = address.unwrap_or(body::DEFAULT_ADDRESS);
     connection::Connection::open(address)?;
     Ok(format!("a server answers at {address}"))
 }

@@ -6,7 +6,7 @@ use monas_robot::{BodyLimit, BodySettings, Skill};
 use crate::options::Options;
 
 /// The limits that do not depend on the walk.
-const ALWAYS: [BodyLimit; 11] = [
+const COMMON_LIMITS: [BodyLimit; 11] = [
     BodyLimit::skill(Skill::FallLeft, NO_MOTION),
     BodyLimit::skill(Skill::FallRight, NO_MOTION),
     BodyLimit::skill(Skill::DiveLeft, NO_MOTION),
@@ -23,15 +23,15 @@ const ALWAYS: [BodyLimit; 11] = [
 const NO_MOTION: &str = "the skill is over at once, without a motion";
 const NO_RADIO: &str = "the robot has no radio: messages of the server have ten bytes";
 
-const LIES: BodyLimit = BodyLimit::skill(Skill::StandUp, "a robot that lies waits for the referee");
+const STAND_UP_LIMIT: BodyLimit = BodyLimit::skill(Skill::StandUp, "a robot that lies waits for the referee");
 const PICKED_UP: BodyLimit =
     BodyLimit::skill(Skill::StandUp, "a robot that lies is put on its feet by the monitor");
 
 /// The limits of a robot with these settings.
 pub(crate) fn limits(settings: &BodySettings) -> Vec<BodyLimit> {
-    let mut limits = ALWAYS.to_vec();
+    let mut limits = COMMON_LIMITS.to_vec();
     // Wrong options are reported as faults of the configuration.
     let Ok(options) = Options::of(&settings.options) else { return limits };
-    limits.push(if options.pick_up { PICKED_UP } else { LIES });
+    limits.push(if options.pick_up { PICKED_UP } else { STAND_UP_LIMIT });
     limits
 }

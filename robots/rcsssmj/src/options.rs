@@ -6,7 +6,7 @@ use std::str::FromStr;
 
 use monas_robot::{BodyFault, BodyOption, BodySettings, CameraOutput, OptionKind};
 
-use crate::body::ADDRESS;
+use crate::body::DEFAULT_ADDRESS;
 use crate::error::Error;
 use crate::humanoid::Humanoid;
 use crate::kick::KickParameters;
@@ -52,15 +52,19 @@ pub(crate) const OPTIONS: &[BodyOption] = &[
     option("pick_up", OptionKind::Flag, "`1` puts a robot that lies on its feet, by the monitor"),
     option("field_length", SIDE_OF_FIELD, "between the goal lines, m; by default 55"),
     option("field_width", SIDE_OF_FIELD, "between the touch lines, m; by default 36"),
-    option("goal_width", OptionKind::Number(0.1, LONGEST), "between the posts of a goal, m; by default 3.66"),
+    option(
+        "goal_width",
+        OptionKind::Number(0.1, MAX_FIELD_SIDE),
+        "between the posts of a goal, m; by default 3.66",
+    ),
     option("half", OptionKind::Number(1.0, 100_000.0), "the length of a half, s; by default 300"),
 ];
 
 /// The longest side of a field, m.
-const LONGEST: f64 = 1000.0;
-const SIDE_OF_FIELD: OptionKind = OptionKind::Number(1.0, LONGEST);
+const MAX_FIELD_SIDE: f64 = 1000.0;
+const SIDE_OF_FIELD: OptionKind = OptionKind::Number(1.0, MAX_FIELD_SIDE);
 /// The range on the longest field; [`Options::of`] has that on the field of the options.
-const LENGTH_ON_FIELD: OptionKind = OptionKind::Number(-LONGEST / 2.0, LONGEST / 2.0);
+const LENGTH_ON_FIELD: OptionKind = OptionKind::Number(-MAX_FIELD_SIDE / 2.0, MAX_FIELD_SIDE / 2.0);
 
 const fn option(name: &'static str, kind: OptionKind, doc: &'static str) -> BodyOption {
     BodyOption { name, kind, doc }
@@ -174,7 +178,8 @@ fn check_address(name: &'static str, address: &str) -> Result<(), BodyFault> {
     match address.rsplit_once(':') {
         Some((host, port)) if !host.is_empty() && port.parse::<u16>().is_ok() => Ok(()),
         _ => {
-            let message = format!("`{name}` is `{address}`, expected a host and a port, such as `{ADDRESS}`");
+            let message =
+                format!("`{name}` is `{address}`, expected a host and a port, such as `{DEFAULT_ADDRESS}`");
             Err(BodyFault::new(name, message))
         }
     }

@@ -21,7 +21,7 @@ const INPUTS: usize = 3 * JOINTS + 9;
 const HIDDEN: [usize; 3] = [512, 256, 128];
 
 /// The numbers in a file of weights.
-const NUMBERS: usize = INPUTS * HIDDEN[0]
+const WEIGHT_COUNT: usize = INPUTS * HIDDEN[0]
     + 3 * HIDDEN[0]
     + HIDDEN[0] * HIDDEN[1]
     + HIDDEN[1]
@@ -30,9 +30,9 @@ const NUMBERS: usize = INPUTS * HIDDEN[0]
     + HIDDEN[2] * JOINTS
     + JOINTS;
 
-/// Default angles to which the network's outputs are added, rad, before [`FLIP`].
+/// Default angles to which the network's outputs are added, rad, before [`JOINT_SIGNS`].
 #[rustfmt::skip]
-const NOMINAL: [f32; JOINTS] = [
+const NOMINAL_ANGLES: [f32; JOINTS] = [
     0.0, 0.0,
     0.0, 1.4, 0.0, -0.4,
     0.0, -1.4, 0.0, 0.4,
@@ -42,7 +42,7 @@ const NOMINAL: [f32; JOINTS] = [
 ];
 /// The signs of the network's joints.
 #[rustfmt::skip]
-const FLIP: [f32; JOINTS] = [
+const JOINT_SIGNS: [f32; JOINTS] = [
     1.0, -1.0,
     1.0, -1.0, -1.0, 1.0,
     -1.0, -1.0, 1.0, 1.0,
@@ -53,9 +53,9 @@ const FLIP: [f32; JOINTS] = [
 /// Torque per angle and per angular velocity with which the network was trained.
 const GAINS: (f64, f64) = (25.0, 0.6);
 /// Greatest size of inputs and outputs.
-const CLIP: f32 = 10.0;
+const MAX_VALUE: f32 = 10.0;
 /// Angular velocity, rad/s, from which the lateral velocity is halved for safety.
-const TURNING: f64 = 0.3;
+const FAST_TURN_RATE: f64 = 0.3;
 
 /// The network with its last output.
 pub struct PolicyWalk {
@@ -95,11 +95,11 @@ impl PolicyWalk {
     }
 
     fn from_bytes(bytes: &[u8]) -> Result<PolicyWalk, String> {
-        if bytes.len() != 4 * NUMBERS {
+        if bytes.len() != 4 * WEIGHT_COUNT {
             return Err(format!(
-                "it has {} bytes, {} are the {NUMBERS} weights of the network",
+                "it has {} bytes, {} are the {WEIGHT_COUNT} weights of the network",
                 bytes.len(),
-                4 * NUMBERS
+                4 * WEIGHT_COUNT
             ));
         }
         let mut numbers = bytes.as_chunks::<4>().0.iter().map(|bytes| f32::from_le_bytes(*bytes));
@@ -119,9 +119,9 @@ impl PolicyWalk {
 
     fn observe(&mut self, velocity: WalkVelocity, motion: &Motion) {
         for joint in 0..JOINTS {
-            let flip = FLIP[joint];
+            let flip = JOINT_SIGNS[joint];
             let place = &mut self.input[3 * joint..3 * joint + 3];
-            place[0] = (motion.positions[joint] as f32 * flip - NOMINAL[joint]) / 4.6;
+            place[0] = (motion.positions[joint] as f32 * flip - NOMINAL_ANGLES[joint]) / 4.6;
             place[1] = motion.velocities[joint] as f32 * flip / 110.0;
             place[2] = self.action[joint] / 10.0;
         }
@@ -132,7 +132,7 @@ impl PolicyWalk {
         for (place, value) in rest.iter_mut().zip(gyro.into_iter().chain(command).chain(down)) {
             *place = value;
         }
-        self.input.iter_mut().for_each(|value| *value = value.clamp(-CLIP, CLIP));
+        self.input.iter_mut().for_each(|value| *value = value.clamp(-MAX_VALUE, MAX_VALUE));
     }
 
     fn infer(&mut self) {
@@ -145,7 +145,7 @@ impl PolicyWalk {
         self.layers[2].apply(second, third);
         third.iter_mut().for_each(elu);
         self.layers[3].apply(third, &mut self.action);
-        self.action.iter_mut().for_each(|value| *value = value.clamp(-CLIP, CLIP));
+        self.action.iter_mut().for_each(|value| *value = value.clamp(-MAX_VALUE, MAX_VALUE));
     }
 }
 
@@ -199,11 +199,11 @@ impl WalkEngine for PolicyWalk {
     }
 
     fn advance(&mut self, velocity: WalkVelocity, motion: &Motion, motors: &mut Motors) {
-        let aside = 1.0 - (velocity.turn.abs() / TURNING).min(1.0) / 2.0;
+        let aside = 1.0 - (velocity.turn.abs() / FAST_TURN_RATE).min(1.0) / 2.0;
         self.observe(WalkVelocity { y: velocity.y * aside, ..velocity }, motion);
         self.infer();
         for (joint, motor) in motors.iter_mut().enumerate() {
-            let target = (NOMINAL[joint] + 0.5 * self.action[joint]) * FLIP[joint];
+            let target = (NOMINAL_ANGLES[joint] + 0.5 * self.action[joint]) * JOINT_SIGNS[joint];
             // Also beyond the limits of a joint: the network uses targets as torques.
             let (angle, (stiffness, damping)) = (target.into(), GAINS);
             *motor = MotorCommand { angle, stiffness, damping, ..MotorCommand::default() };
@@ -222,7 +222,7 @@ mod tests {
 
     /// Weights that are all zero, except for some.
     fn weights(set: &[(usize, f32)]) -> Vec<u8> {
-        let mut numbers = vec![0.0f32; NUMBERS];
+        let mut numbers = vec![0.0f32; WEIGHT_COUNT];
         set.iter().for_each(|(place, value)| numbers[*place] = *value);
         numbers.iter().flat_map(|number| number.to_le_bytes()).collect()
     }

@@ -15,23 +15,23 @@ use crate::monitor::Monitor;
 /// The program, as its package installs it.
 pub(crate) const PROGRAM: &str = "rcssservermj";
 /// The command that installs a missing program.
-const INSTALL: &str =
+const INSTALL_COMMAND: &str =
     "install it with `pip install rcsssmj==0.2.1`, or name the program in the attribute `server`";
 /// The time limit for the server's first answer: Python and the physics are loaded first.
-const STARTING: Duration = Duration::from_secs(90);
+const START_TIMEOUT: Duration = Duration::from_secs(90);
 /// The pause between two attempts to connect.
-const RETRY: Duration = Duration::from_millis(5);
+const RETRY_INTERVAL: Duration = Duration::from_millis(5);
 
 /// The most names that are tried for a folder.
 const MOST_FOLDERS: u32 = 1000;
 
 /// Code that the server's Python runs first, from the server's folder: version 0.2.1 ends with an
 /// error when a shape without a name touches the ball, as the K1 has.
-const REPAIR: &str = include_str!("sitecustomize.py");
+const PYTHON_PATCH: &str = include_str!("sitecustomize.py");
 
 /// Waits until its input ends, which it does when the run has ended in any way; then ends the
 /// server and removes its folder.
-const WATCH: &str = r#"read _; kill -9 "$0"; rm -rf "$1""#;
+const WATCH_SCRIPT: &str = r#"read _; kill -9 "$0"; rm -rf "$1""#;
 
 /// A running server; it ends when this value is dropped, or with the process of the run, even if
 /// that is killed.
@@ -59,7 +59,7 @@ impl Server {
             |what: std::io::Error| Error::configuration(format!("the server cannot be started: {what}"));
         let name = format!("monas-rcsssmj-{}-{agents}", std::process::id());
         let folder = private_folder(&std::env::temp_dir(), &name).map_err(failed)?;
-        std::fs::write(folder.join("sitecustomize.py"), REPAIR).map_err(failed)?;
+        std::fs::write(folder.join("sitecustomize.py"), PYTHON_PATCH).map_err(failed)?;
         let log = File::create(folder.join("output.log")).map_err(failed)?;
         let mut command = Command::new(program);
         command.args(["--no-render", "--host", "127.0.0.1"]);
@@ -77,7 +77,7 @@ impl Server {
             let _ = std::fs::remove_dir_all(&folder);
             match error.kind() {
                 ErrorKind::NotFound => {
-                    Error::configuration(format!("there is no program `{program}`: {INSTALL}"))
+                    Error::configuration(format!("there is no program `{program}`: {INSTALL_COMMAND}"))
                 }
                 _ => Error::configuration(format!("`{program}` cannot be started: {error}")),
             }
@@ -123,7 +123,7 @@ impl Server {
         loop {
             match connect(self) {
                 Ok(connection) => return Ok(connection),
-                Err(error) if begun.elapsed() > STARTING => return Err(error),
+                Err(error) if begun.elapsed() > START_TIMEOUT => return Err(error),
                 Err(_) => {}
             }
             if let Ok(Some(status)) = self.process.try_wait() {
@@ -131,7 +131,7 @@ impl Server {
                 let last = log.lines().rev().find(|line| !line.trim().is_empty()).unwrap_or("no output");
                 return Err(Error::configuration(format!("the server has ended, {status}: {last}")));
             }
-            crate::connection::pause(RETRY);
+            crate::connection::pause(RETRY_INTERVAL);
         }
     }
 }
@@ -178,7 +178,7 @@ fn watch(server: &Child, folder: &Path) -> std::io::Result<Option<Child>> {
         return Ok(None);
     }
     let mut watcher = Command::new("sh");
-    watcher.args(["-c", WATCH, &server.id().to_string()]).arg(folder).current_dir("/");
+    watcher.args(["-c", WATCH_SCRIPT, &server.id().to_string()]).arg(folder).current_dir("/");
     watcher.stdin(Stdio::piped()).stdout(Stdio::null()).stderr(Stdio::null());
     #[cfg(unix)]
     std::os::unix::process::CommandExt::process_group(&mut watcher, 0);

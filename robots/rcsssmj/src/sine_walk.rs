@@ -32,13 +32,13 @@ pub struct SineWalk {
 }
 
 /// The duration of the motion into the crouch, s.
-const CROUCHING: f64 = 0.4;
+const CROUCH_TIME: f64 = 0.4;
 /// Duration of stepping on the spot before standing, s, in which the robot loses its speed.
-const SLOWING: f64 = 1.2;
+const SLOWDOWN_TIME: f64 = 1.2;
 /// Roll of the shoulders beside the body, rad: the arms hang.
-const ARMS: f64 = 1.35;
+const SHOULDER_ROLL: f64 = 1.35;
 /// The greatest correction of the speed by the feedback of balance, m/s.
-const CORRECTION: f64 = 0.5;
+const MAX_BALANCE_CORRECTION: f64 = 0.5;
 
 impl SineWalk {
     /// A walk with parameters, for a robot that stands.
@@ -50,16 +50,16 @@ impl SineWalk {
             crouched: 0.0,
             stepping: 0.0,
             velocity: WalkVelocity::default(),
-            still: SLOWING,
+            still: SLOWDOWN_TIME,
         }
     }
 
     fn step(&mut self, wanted: WalkVelocity) {
         let walk = &self.parameters;
-        self.crouched = (self.crouched + CYCLE_SECONDS / CROUCHING).min(1.0);
+        self.crouched = (self.crouched + CYCLE_SECONDS / CROUCH_TIME).min(1.0);
         let moves = wanted != WalkVelocity::default();
         self.still = if moves { 0.0 } else { self.still + CYCLE_SECONDS };
-        let steps = self.crouched >= 1.0 && self.still < SLOWING;
+        let steps = self.crouched >= 1.0 && self.still < SLOWDOWN_TIME;
         let change = CYCLE_SECONDS / walk.starting;
         self.stepping = (self.stepping + if steps { change } else { -change }).clamp(0.0, 1.0);
         self.clock = match self.stepping > 0.0 {
@@ -82,13 +82,14 @@ impl SineWalk {
         let [roll_rate, pitch_rate, _] = motion.gyro;
         let pitch = pitch - walk.lean;
         let mut angles = [0.0; JOINTS];
-        (angles[LEFT_SHOULDER_ROLL], angles[RIGHT_SHOULDER_ROLL]) = (-ARMS, ARMS);
+        (angles[LEFT_SHOULDER_ROLL], angles[RIGHT_SHOULDER_ROLL]) = (-SHOULDER_ROLL, SHOULDER_ROLL);
 
         // A foot goes ahead and back by twice its amplitude in each pair of steps.
         let per_speed = self.stepping / (4.0 * walk.frequency);
-        let ahead =
-            (walk.step_pitch * pitch + walk.step_pitch_rate * pitch_rate).clamp(-CORRECTION, CORRECTION);
-        let right = (walk.step_roll * roll + walk.step_roll_rate * roll_rate).clamp(-CORRECTION, CORRECTION);
+        let ahead = (walk.step_pitch * pitch + walk.step_pitch_rate * pitch_rate)
+            .clamp(-MAX_BALANCE_CORRECTION, MAX_BALANCE_CORRECTION);
+        let right = (walk.step_roll * roll + walk.step_roll_rate * roll_rate)
+            .clamp(-MAX_BALANCE_CORRECTION, MAX_BALANCE_CORRECTION);
         let ahead = walk.stride * (self.velocity.x + ahead - walk.drift) * per_speed;
         let left = walk.side_stride * (self.velocity.y - right) * per_speed;
         let yaw = walk.turn_stride * self.velocity.turn * per_speed;

@@ -11,7 +11,7 @@ use crate::humanoid::{Humanoid, read};
 
 /// From the ankle's roll joint down to the sole: half the height of the foot's box, below its
 /// middle.
-const SOLE: f64 = 0.03;
+const SOLE_HEIGHT: f64 = 0.03;
 
 /// The Booster T1: 23 joints, 1.2 m, 32 kg.
 pub static T1: Humanoid = Humanoid {
@@ -23,12 +23,12 @@ pub static T1: Humanoid = Humanoid {
     right_leg: 17,
     straight_height: 0.6735,
     placed_height: 0.6735,
-    sole: SOLE,
+    sole: SOLE_HEIGHT,
     corners: [
-        Point3::new(0.1215, 0.05, -SOLE),
-        Point3::new(0.1215, -0.05, -SOLE),
-        Point3::new(-0.1015, 0.05, -SOLE),
-        Point3::new(-0.1015, -0.05, -SOLE),
+        Point3::new(0.1215, 0.05, -SOLE_HEIGHT),
+        Point3::new(0.1215, -0.05, -SOLE_HEIGHT),
+        Point3::new(-0.1015, 0.05, -SOLE_HEIGHT),
+        Point3::new(-0.1015, -0.05, -SOLE_HEIGHT),
     ],
     hips: Point3::new(0.0625, 0.0, -0.1155),
     beside: 0.106,

@@ -68,7 +68,7 @@ pub trait WalkEngine: Send {
 }
 
 /// The greatest changes of velocity: m/s2 and rad/s2.
-const ACCELERATION: (f64, f64) = (1.5, 4.0);
+const MAX_ACCELERATIONS: (f64, f64) = (1.5, 4.0);
 
 /// A velocity that approaches the requested one within the limits of a gait and of its
 /// acceleration.
@@ -81,7 +81,7 @@ impl Ramp {
     /// Advances by `seconds` and returns the velocity to walk with. Components that are not finite
     /// count as zero.
     pub fn advance(&mut self, wanted: WalkVelocity, gait: &Gait, seconds: f64) -> WalkVelocity {
-        let (linear, angular) = ACCELERATION;
+        let (linear, angular) = MAX_ACCELERATIONS;
         let WalkVelocity { x, y, turn } = &mut self.velocity;
         approach(x, gait.x.clamp(wanted.x), linear * seconds);
         approach(y, gait.y.clamp(wanted.y), linear * seconds);

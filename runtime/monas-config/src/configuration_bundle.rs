@@ -13,7 +13,7 @@ use crate::{Element, Grammar};
 
 /// Name endings and media types of the configurations and models included in a bundle. Other files,
 /// above all keys, are excluded.
-const PARTS: [(&str, &str); 6] = [
+const BUNDLED_TYPES: [(&str, &str); 6] = [
     ("xml", "text/xml"),
     ("toml", "application/toml"),
     ("srm", "text/plain"),
@@ -240,7 +240,7 @@ fn is_configuration(path: &Path) -> bool {
 
 fn media_type(path: &Path) -> Option<&'static str> {
     let extension = path.extension()?.to_str()?;
-    PARTS.iter().find(|(known, _)| *known == extension).map(|(_, media_type)| *media_type)
+    BUNDLED_TYPES.iter().find(|(known, _)| *known == extension).map(|(_, media_type)| *media_type)
 }
 
 /// The path without `.` and, where it can be resolved lexically, without `..`.

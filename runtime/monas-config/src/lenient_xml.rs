@@ -10,7 +10,7 @@ use std::collections::BTreeSet;
 use yase::{Diagnostic, Span};
 
 /// Maximum nesting depth, which bounds the stack of recursive readers.
-const DEPTH: usize = 64;
+const MAX_DEPTH: usize = 64;
 
 /// The root element added around everything.
 pub(crate) const ROOT: &str = "monas";
@@ -294,7 +294,7 @@ impl<'a> RepairWriter<'a> {
         let tag = self.at;
         let name = name_at(&self.source[tag + 1..]);
         let span = Span::new(tag + 1, tag + 1 + name.len());
-        if self.open.len() >= DEPTH {
+        if self.open.len() >= MAX_DEPTH {
             return self.leave_out(name, span);
         }
         self.copy_to(span.end);
@@ -304,7 +304,7 @@ impl<'a> RepairWriter<'a> {
     /// Leaves out an element that is nested too deep, with its contents; reported once.
     fn leave_out(&mut self, name: &str, span: Span) {
         if self.too_deep == 0 {
-            let message = format!("`<{name}>` is nested more than {DEPTH} levels deep");
+            let message = format!("`<{name}>` is nested more than {MAX_DEPTH} levels deep");
             let diagnostic = Diagnostic::error("E0302", span, message);
             self.out.diagnostics.push(diagnostic.with_hint("no configuration nests this deep"));
         }

@@ -8,11 +8,11 @@ use std::sync::{Arc, OnceLock};
 use yase::diagnostic::nearest;
 use yase::{Diagnostic, Source};
 
-/// The largest file that is read, in bytes, unless [`LIMIT`] says another number.
-const LARGEST: u64 = 64 << 20;
+/// The largest file that is read, in bytes, unless [`MAX_SIZE_VARIABLE`] says another number.
+const DEFAULT_MAX_SIZE: u64 = 64 << 20;
 
 /// The environment variable with the size of the largest file that is read, in MiB.
-const LIMIT: &str = "MONAS_DOCUMENT_LIMIT";
+const MAX_SIZE_VARIABLE: &str = "MONAS_DOCUMENT_LIMIT";
 
 /// The name of standard input in diagnostics.
 pub(crate) const STANDARD_INPUT: &str = "<stdin>";
@@ -36,8 +36,8 @@ pub fn shown_name(path: &Path) -> String {
 /// A diagnostic that names the file. Files of more than 64 MiB, or what the environment variable
 /// `MONAS_DOCUMENT_LIMIT` says in MiB, are refused (E0317).
 pub fn read(path: &Path) -> Result<Arc<Source>, Box<Diagnostic>> {
-    let set = std::env::var(LIMIT).ok().and_then(|text| text.parse().ok());
-    let largest = set.map_or(LARGEST, |mebibytes: u64| mebibytes.saturating_mul(1 << 20));
+    let set = std::env::var(MAX_SIZE_VARIABLE).ok().and_then(|text| text.parse().ok());
+    let largest = set.map_or(DEFAULT_MAX_SIZE, |mebibytes: u64| mebibytes.saturating_mul(1 << 20));
     // A process has one standard input, and reads a configuration more than once.
     static TEXT: OnceLock<Result<Arc<Source>, Box<Diagnostic>>> = OnceLock::new();
     match is_standard_input(path) {
@@ -55,7 +55,7 @@ fn read_up_to(path: &Path, largest: u64) -> Result<Arc<Source>, Box<Diagnostic>>
     match content {
         Ok(bytes) if bytes.len() as u64 > largest => {
             let message = format!("`{name}` has more than {} MiB", largest >> 20);
-            let hint = format!("set the environment variable {LIMIT} to a larger number of MiB");
+            let hint = format!("set the environment variable {MAX_SIZE_VARIABLE} to a larger number of MiB");
             Err(Box::new(unreadable("E0317", &name, message).with_hint(hint)))
         }
         Ok(bytes) => match String::from_utf8(bytes) {
@@ -178,6 +178,6 @@ mod tests {
         assert_eq!(read_up_to(&path, 5).unwrap().text, "r = A");
         let refused = read_up_to(&path, 4).unwrap_err();
         assert_eq!(refused.code, "E0317");
-        assert!(refused.hint.as_deref().unwrap_or_default().contains(LIMIT));
+        assert!(refused.hint.as_deref().unwrap_or_default().contains(MAX_SIZE_VARIABLE));
     }
 }

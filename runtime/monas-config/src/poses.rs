@@ -36,7 +36,7 @@ use yase::{Diagnostic, Source, Span};
 use crate::{AttributeRule, Element, ElementRule, Grammar, Kind, Values, paths};
 
 /// The longest way to a pose, s.
-const LONGEST: f64 = 60.0;
+const MAX_DURATION: f64 = 60.0;
 
 /// A pose of a sequence.
 #[derive(Clone, PartialEq, Debug)]
@@ -51,7 +51,7 @@ pub struct JointPose {
 
 /// The grammar of a sequence of poses of a body.
 pub fn grammar(anatomy: &Anatomy) -> Grammar {
-    let seconds = Kind::number_in(anatomy.cycle.as_secs_f64(), LONGEST);
+    let seconds = Kind::number_in(anatomy.cycle.as_secs_f64(), MAX_DURATION);
     let pose = ElementRule::new("pose", "a pose of the joints")
         .attribute(AttributeRule::new("duration", seconds, "the time of the way to the pose, s").or("1"))
         .attribute(AttributeRule::new(

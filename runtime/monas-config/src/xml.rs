@@ -41,14 +41,14 @@ pub fn parse(source: &Arc<Source>) -> (Vec<Element>, Vec<Diagnostic>) {
 /// repairs.
 ///
 /// # Errors
-/// It is not XML, or more than [`DEEPEST`] elements are in one another.
+/// It is not XML, or more than [`MAX_DEPTH`] elements are in one another.
 pub(crate) fn parse_strict(source: &Arc<Source>) -> Result<Element, Diagnostic> {
     let text = RepairedXml::unchanged(&source.text);
     let document = roxmltree::Document::parse(&source.text)
         .map_err(|error| not_xml(&error, &text, source).in_source(source))?;
-    match document.descendants().find(|node| node.ancestors().take(DEEPEST + 1).count() > DEEPEST) {
+    match document.descendants().find(|node| node.ancestors().take(MAX_DEPTH + 1).count() > MAX_DEPTH) {
         Some(deep) => {
-            let message = format!("more than {DEEPEST} elements are in one another");
+            let message = format!("more than {MAX_DEPTH} elements are in one another");
             let span = within(&source.text, (deep.range().start..deep.range().start + 1).into());
             Err(Diagnostic::error("E0301", span, message).in_source(source))
         }
@@ -57,7 +57,7 @@ pub(crate) fn parse_strict(source: &Arc<Source>) -> Result<Element, Diagnostic> 
 }
 
 /// The greatest depth of elements in [`parse_strict`].
-const DEEPEST: usize = 64;
+const MAX_DEPTH: usize = 64;
 
 fn not_xml(error: &roxmltree::Error, repaired: &RepairedXml, source: &Arc<Source>) -> Diagnostic {
     let at = repaired.original(byte_of(&repaired.text, error.pos()));

@@ -123,7 +123,7 @@ pub struct CallingThread {
 impl CallingThread {
     /// The calling thread.
     pub fn current() -> CallingThread {
-        OWN.with(|own| CallingThread { slot: own.slot, number: own.number })
+        OWN_SLOT.with(|own| CallingThread { slot: own.slot, number: own.number })
     }
 
     /// Whether it is the calling thread.
@@ -153,7 +153,7 @@ impl CallingThread {
 /// Calls `look` with the last call of each thread that has called an activity. Neither allocates
 /// nor takes a lock, so that a signal handler may use it.
 pub fn each(mut look: impl FnMut(LastCall)) {
-    let current = CURRENT.get();
+    let current = CURRENT_SLOT.get();
     let mut next = NEWEST.get();
     while let Some(slot) = next {
         let is_running = slot.is_running.load(Ordering::Relaxed);
@@ -170,11 +170,11 @@ pub fn each(mut look: impl FnMut(LastCall)) {
 
 /// Passes the activity that this thread calls, and its cycle, to a function.
 pub fn called(look: impl FnOnce(&'static ActivityName, u64)) {
-    if CURRENT.get().is_none() {
+    if CURRENT_SLOT.get().is_none() {
         return;
     }
     // The thread-local is destroyed already when the thread ends.
-    let called = OWN.try_with(|own| own.slot.call()).ok().flatten();
+    let called = OWN_SLOT.try_with(|own| own.slot.call()).ok().flatten();
     if let Some(call) = called {
         look(call.name, call.cycle);
     }
@@ -263,7 +263,7 @@ impl OwnSlot {
     fn take() -> OwnSlot {
         let number = THREADS.fetch_add(1, Ordering::Relaxed) + 1;
         let slot = CallSlot::take(number);
-        CURRENT.set(Some(slot));
+        CURRENT_SLOT.set(Some(slot));
         OwnSlot { slot, number }
     }
 }
@@ -277,9 +277,9 @@ impl Drop for OwnSlot {
 }
 
 thread_local! {
-    static OWN: OwnSlot = OwnSlot::take();
+    static OWN_SLOT: OwnSlot = OwnSlot::take();
     /// The same slot, without a destructor: a signal handler reads it.
-    static CURRENT: Cell<Option<&'static CallSlot>> = const { Cell::new(None) };
+    static CURRENT_SLOT: Cell<Option<&'static CallSlot>> = const { Cell::new(None) };
 }
 
 /// Marks a call of an activity on this thread until it is dropped, also when unwinding. Then this
@@ -293,7 +293,7 @@ pub(crate) struct CallMark {
 impl CallMark {
     pub(crate) fn begin(name: &'static ActivityName, cycle: u64) -> CallMark {
         let call = Call { name, cycle, function: ActivityFunction::Execute as u8 };
-        let outer = OWN.try_with(|own| {
+        let outer = OWN_SLOT.try_with(|own| {
             let outer = own.slot.call();
             own.slot.set(Some(call));
             outer
@@ -305,13 +305,13 @@ impl CallMark {
 
 impl Drop for CallMark {
     fn drop(&mut self) {
-        let _ = OWN.try_with(|own| own.slot.set(self.outer));
+        let _ = OWN_SLOT.try_with(|own| own.slot.set(self.outer));
     }
 }
 
 /// Notes the function that this thread calls.
 pub(crate) fn calls(function: ActivityFunction) {
-    let _ = OWN.try_with(|own| {
+    let _ = OWN_SLOT.try_with(|own| {
         own.slot.change(|| own.slot.function.store(function as u8, Ordering::Relaxed));
     });
 }

@@ -6,7 +6,7 @@ use std::time::Duration;
 use narukom::Timestamp;
 
 /// Cycles per second of a free-running agent where cycles take no time.
-const FREE: f64 = 1000.0;
+const FREE_RUNNING_RATE: f64 = 1000.0;
 
 /// A number of cycles per second.
 #[derive(Clone, Copy, PartialEq, PartialOrd, Debug)]
@@ -51,7 +51,7 @@ impl Frequency {
 
     /// Cycles per second on the grid of start times.
     fn grid(self) -> f64 {
-        if self.is_free() { FREE } else { self.hertz }
+        if self.is_free() { FREE_RUNNING_RATE } else { self.hertz }
     }
 
     /// The time from one cycle to the next.

@@ -31,20 +31,22 @@ pub struct CountingAllocator;
 type AccountId = u16;
 
 /// Number of accounts.
-const OWNERS: usize = 4096;
+const ACCOUNT_COUNT: usize = 4096;
 /// Number of entries per row; the address of a block selects its row.
-const ROW: usize = 8;
+const ENTRIES_PER_ROW: usize = 8;
 const ROWS: usize = 4096;
 /// Number of bits of an entry for the size of the block; the others hold its owner.
 const SIZE_BITS: u32 = 48;
 
 static IS_COUNTING: AtomicBool = AtomicBool::new(false);
-static ACCOUNTS: [AtomicI64; OWNERS] = [const { AtomicI64::new(0) }; OWNERS];
+static ACCOUNTS: [AtomicI64; ACCOUNT_COUNT] = [const { AtomicI64::new(0) }; ACCOUNT_COUNT];
 static NEXT_OWNER: AtomicU16 = AtomicU16::new(1);
 /// Number of blocks in the table.
 static BLOCKS: AtomicUsize = AtomicUsize::new(0);
-static ADDRESSES: [[AtomicUsize; ROW]; ROWS] = [const { [const { AtomicUsize::new(0) }; ROW] }; ROWS];
-static ENTRIES: [[AtomicU64; ROW]; ROWS] = [const { [const { AtomicU64::new(0) }; ROW] }; ROWS];
+static ADDRESSES: [[AtomicUsize; ENTRIES_PER_ROW]; ROWS] =
+    [const { [const { AtomicUsize::new(0) }; ENTRIES_PER_ROW] }; ROWS];
+static ENTRIES: [[AtomicU64; ENTRIES_PER_ROW]; ROWS] =
+    [const { [const { AtomicU64::new(0) }; ENTRIES_PER_ROW] }; ROWS];
 
 thread_local! {
     static WORKS_FOR: Cell<AccountId> = const { Cell::new(0) };
@@ -91,7 +93,7 @@ impl Account {
 
     #[cold]
     fn open(&self) -> AccountId {
-        let take = |next: AccountId| (usize::from(next) < OWNERS).then(|| next + 1);
+        let take = |next: AccountId| (usize::from(next) < ACCOUNT_COUNT).then(|| next + 1);
         // Only one thread at a time calls an activity.
         let taken = NEXT_OWNER.fetch_update(Ordering::Relaxed, Ordering::Relaxed, take).unwrap_or_default();
         self.0.store(taken, Ordering::Relaxed);
@@ -197,9 +199,9 @@ unsafe impl GlobalAlloc for CountingAllocator {
 /// Length of a window in calls.
 const WINDOW: u32 = 32;
 /// Growth: the minimum rises in this many consecutive windows,
-const RISES: u32 = 8;
+const WINDOWS_OF_GROWTH: u32 = 8;
 /// and by at least this many bytes in total.
-const LEAST: u64 = 4096;
+const MIN_GROWTH: u64 = 4096;
 
 /// Detects whether the memory held by an activity grows from call to call.
 #[derive(Clone, Copy, Debug, Default)]
@@ -242,7 +244,8 @@ impl LeakDetector {
 
     /// Whether growth was detected.
     pub fn grows(&self) -> bool {
-        self.rises >= RISES && self.last.is_some_and(|last| last.saturating_sub(self.from) >= LEAST)
+        self.rises >= WINDOWS_OF_GROWTH
+            && self.last.is_some_and(|last| last.saturating_sub(self.from) >= MIN_GROWTH)
     }
 
     /// Bytes held; none without the counting allocator.
@@ -303,9 +306,9 @@ mod tests {
         let account = Account::default();
         let owner = account.open();
         let same_row: Vec<usize> =
-            (0..).map(|n| n * 16 + 3).filter(|at| row_of(*at) == 7).take(ROW + 1).collect();
+            (0..).map(|n| n * 16 + 3).filter(|at| row_of(*at) == 7).take(ENTRIES_PER_ROW + 1).collect();
         same_row.iter().for_each(|address| note(*address, 10, owner));
-        assert_eq!(account.held(), Some(10 * ROW as u64));
+        assert_eq!(account.held(), Some(10 * ENTRIES_PER_ROW as u64));
         same_row.iter().for_each(|address| _ = forget_block(*address));
         assert_eq!(account.held(), Some(0));
     }

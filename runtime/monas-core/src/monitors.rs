@@ -178,7 +178,7 @@ impl Monitors {
             let is_lost = one.monitor.verdict() == MonitorVerdict::Lost;
             let property = one.monitor.plan().name().to_owned();
             let earlier = one.violated_at.replace(now);
-            let is_repeated = !is_lost && earlier.is_some_and(|earlier| now.since(earlier) < REPETITION);
+            let is_repeated = !is_lost && earlier.is_some_and(|earlier| now.since(earlier) < LOG_INTERVAL);
             broken.push(PropertyViolation { property, is_lost, is_repeated, acts: one.acts && !is_lost });
             if !is_lost {
                 one.monitor.try_restart();
@@ -193,13 +193,13 @@ pub struct PropertyViolation {
     pub(crate) property: String,
     /// Set if the property can no longer be monitored.
     is_lost: bool,
-    /// Whether it follows another violation of the property within [`REPETITION`].
+    /// Whether it follows another violation of the property within [`LOG_INTERVAL`].
     is_repeated: bool,
     acts: bool,
 }
 
 /// A property that is violated again within this time is not logged again.
-const REPETITION: Duration = Duration::from_secs(1);
+const LOG_INTERVAL: Duration = Duration::from_secs(1);
 
 impl PropertyViolation {
     /// Its form in records.

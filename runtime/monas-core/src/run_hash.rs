@@ -39,7 +39,7 @@ struct HashState {
 
 /// The number of bytes hashed at once. BLAKE3 hashes its chunks of 1 KiB side by side if it is
 /// given many of them.
-const BLOCK: usize = 16 * 1024;
+const BLOCK_SIZE: usize = 16 * 1024;
 
 impl RunHash {
     /// The hash of no messages.
@@ -75,9 +75,9 @@ impl HashState {
         }
         pending.extend_from_slice(&sample.header.sequence.to_le_bytes());
         sample.message.encode_to(pending);
-        if pending.len() >= BLOCK {
+        if pending.len() >= BLOCK_SIZE {
             // Whole blocks: part of a chunk would be hashed alone, and so would the rest of it.
-            let whole = pending.len() / BLOCK * BLOCK;
+            let whole = pending.len() / BLOCK_SIZE * BLOCK_SIZE;
             self.hasher.update(&pending[..whole]);
             pending.drain(..whole);
         }

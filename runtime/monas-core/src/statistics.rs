@@ -217,7 +217,7 @@ pub struct MovingAverage {
 
 impl MovingAverage {
     /// Weight of a new value.
-    const FACTOR: f64 = 0.1;
+    const NEW_VALUE_WEIGHT: f64 = 0.1;
 
     /// Adds a value. The first value becomes the mean.
     pub fn add(&mut self, value: Duration) {
@@ -228,9 +228,9 @@ impl MovingAverage {
             return;
         }
         let difference = value.as_secs_f64() - self.mean;
-        let step = MovingAverage::FACTOR * difference;
+        let step = MovingAverage::NEW_VALUE_WEIGHT * difference;
         self.mean += step;
-        self.variance = (1.0 - MovingAverage::FACTOR) * (self.variance + difference * step);
+        self.variance = (1.0 - MovingAverage::NEW_VALUE_WEIGHT) * (self.variance + difference * step);
     }
 
     /// The averages of two stopwatches combined, weighted by their numbers of values.

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// The longest chain of symbolic links that is followed.
-const LINKS: usize = 40;
+const MAX_LINKS: usize = 40;
 
 /// Distinguishes the drafts of this process.
 static DRAFTS: AtomicU64 = AtomicU64::new(0);
@@ -124,7 +124,7 @@ impl Drop for Draft {
 /// The file that a chain of symbolic links leads to; it need not exist.
 fn resolved(path: &Path) -> io::Result<PathBuf> {
     let mut path = path.to_path_buf();
-    for _ in 0..LINKS {
+    for _ in 0..MAX_LINKS {
         match fs::read_link(&path) {
             Ok(next) => path = folder_of(&path).join(next),
             Err(_) => return Ok(path),

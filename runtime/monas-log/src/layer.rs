@@ -202,11 +202,11 @@ impl SeverityFilter {
 struct MinimumSeverity(AtomicU8);
 
 /// No severity.
-const NOTHING: u8 = u8::MAX;
+const NO_SEVERITY: u8 = u8::MAX;
 
 impl Default for MinimumSeverity {
     fn default() -> MinimumSeverity {
-        MinimumSeverity(AtomicU8::new(NOTHING))
+        MinimumSeverity(AtomicU8::new(NO_SEVERITY))
     }
 }
 
@@ -216,7 +216,7 @@ impl MinimumSeverity {
     }
 
     fn exclude_all(&self) {
-        self.set(NOTHING);
+        self.set(NO_SEVERITY);
     }
 
     fn set(&self, number: u8) {
@@ -226,7 +226,7 @@ impl MinimumSeverity {
 
     fn level(&self) -> LevelFilter {
         match self.0.load(Ordering::Relaxed) {
-            NOTHING => LevelFilter::OFF,
+            NO_SEVERITY => LevelFilter::OFF,
             0 | 1 => LevelFilter::ERROR,
             2 => LevelFilter::INFO,
             3 => LevelFilter::DEBUG,

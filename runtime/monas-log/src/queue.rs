@@ -9,7 +9,7 @@ use crossbeam_queue::ArrayQueue;
 use super::record::Record;
 
 /// Capacity in messages.
-const RECORDS: usize = 1024;
+const CAPACITY: usize = 1024;
 
 /// A record in use. It returns to its queue even if formatting a value panics.
 struct RecordGuard<'a> {
@@ -37,12 +37,12 @@ pub(crate) struct RecordQueue {
 
 impl RecordQueue {
     pub(crate) fn new() -> RecordQueue {
-        let free = ArrayQueue::new(RECORDS);
+        let free = ArrayQueue::new(CAPACITY);
         // they all fit
-        (0..RECORDS).for_each(|_| drop(free.push(Box::new(Record::new()))));
+        (0..CAPACITY).for_each(|_| drop(free.push(Box::new(Record::new()))));
         RecordQueue {
             free,
-            full: ArrayQueue::new(RECORDS),
+            full: ArrayQueue::new(CAPACITY),
             dropped: AtomicU64::new(0),
             ends: AtomicBool::new(false),
             asleep: AtomicBool::new(false),
@@ -126,7 +126,7 @@ mod tests {
     #[test]
     fn log_lines_without_a_free_record_are_dropped_and_counted() {
         let queue = RecordQueue::new();
-        (0..RECORDS + 3).for_each(|number| {
+        (0..CAPACITY + 3).for_each(|number| {
             queue.put(|record| {
                 record.cycle = Some(number as u64);
                 true
@@ -134,11 +134,11 @@ mod tests {
         });
         let mut seen = Vec::new();
         while queue.next(|record| seen.extend(record.cycle)) {}
-        assert!(seen.into_iter().eq(0..RECORDS as u64));
+        assert!(seen.into_iter().eq(0..CAPACITY as u64));
         assert_eq!((queue.take_dropped(), queue.take_dropped()), (3, 0));
         queue.put(|_| true);
         assert!(queue.next(|_| {}), "records come back");
-        (0..=RECORDS).for_each(|_| queue.put(|_| false));
+        (0..=CAPACITY).for_each(|_| queue.put(|_| false));
         assert_eq!(
             (queue.next(|_| {}), queue.take_dropped()),
             (false, 0),
@@ -146,7 +146,7 @@ mod tests {
         );
         let fill = || queue.put(|_| panic!("it cannot be shown"));
         assert!(std::panic::catch_unwind(std::panic::AssertUnwindSafe(fill)).is_err());
-        (0..RECORDS).for_each(|_| queue.put(|_| true));
+        (0..CAPACITY).for_each(|_| queue.put(|_| true));
         assert_eq!(queue.take_dropped(), 0, "nor does what panics");
     }
 

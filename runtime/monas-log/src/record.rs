@@ -12,11 +12,11 @@ use monas_core::activity_context as context;
 use monas_core::call_slot;
 
 /// Maximum length of a message, in bytes.
-const WORDS: usize = 1024;
+const MAX_MESSAGE_LENGTH: usize = 1024;
 /// Maximum length of a name, in bytes.
-const NAME: usize = 64;
+const MAX_NAME_LENGTH: usize = 64;
 /// Marks a cut text.
-const MARK: char = '…';
+const ELLIPSIS: char = '…';
 
 /// The severity of a level of `tracing`; a fatal error is marked by a field.
 pub(crate) fn severity_of(level: Level) -> Severity {
@@ -54,10 +54,10 @@ impl Record {
             severity: Severity::Info,
             time: RecordTime::Simulated(Timestamp::ZERO),
             cycle: None,
-            robot: BoundedText::of(NAME),
-            agent: BoundedText::of(NAME),
-            activity: BoundedText::of(NAME),
-            message: BoundedText::of(WORDS),
+            robot: BoundedText::of(MAX_NAME_LENGTH),
+            agent: BoundedText::of(MAX_NAME_LENGTH),
+            activity: BoundedText::of(MAX_NAME_LENGTH),
+            message: BoundedText::of(MAX_MESSAGE_LENGTH),
         }
     }
 
@@ -140,7 +140,7 @@ pub(crate) struct BoundedText {
 
 impl BoundedText {
     fn of(most: usize) -> BoundedText {
-        BoundedText { text: String::with_capacity(most + MARK.len_utf8()), most, is_cut: false }
+        BoundedText { text: String::with_capacity(most + ELLIPSIS.len_utf8()), most, is_cut: false }
     }
 
     pub(crate) fn as_str(&self) -> &str {
@@ -172,7 +172,7 @@ impl BoundedText {
         }
         let fits = (0..=room).rev().find(|&end| text.is_char_boundary(end)).unwrap_or(0);
         self.text.push_str(&text[..fits]);
-        self.text.push(MARK);
+        self.text.push(ELLIPSIS);
         self.is_cut = true;
     }
 }

@@ -40,8 +40,8 @@ pub(crate) fn check(bytes: &[u8], note: &BuildFingerprint) -> Result<(), String>
     if segments.chain(sections).any(is_outside) {
         return Err("it is cut off".into());
     }
-    match note.field(note::CONTENT) {
-        None | Some(note::UNSEALED) => Ok(()),
+    match note.field(note::CONTENT_FIELD) {
+        None | Some(note::UNSEALED_CONTENT) => Ok(()),
         Some(expected) => match place(bytes).map(|place| hash(bytes, &place)) {
             Some(found) if found == expected => Ok(()),
             _ => Err("its content is not what was built".into()),
@@ -55,10 +55,10 @@ fn place(bytes: &[u8]) -> Option<Range<usize>> {
     let (offset, size) = file.section_by_name(note::SECTION)?.file_range()?;
     let offset = usize::try_from(offset).ok()?;
     let section = bytes.get(offset..)?.get(..usize::try_from(size).ok()?)?;
-    let field = format!("\n{} ", note::CONTENT);
+    let field = format!("\n{} ", note::CONTENT_FIELD);
     let found = section.windows(field.len()).position(|window| window == field.as_bytes())?;
     let start = offset + found + field.len();
-    let place = start..start + note::UNSEALED.len();
+    let place = start..start + note::UNSEALED_CONTENT.len();
     bytes.get(place.clone())?.iter().all(u8::is_ascii_hexdigit).then_some(place)
 }
 
@@ -66,7 +66,7 @@ fn place(bytes: &[u8]) -> Option<Range<usize>> {
 fn hash(bytes: &[u8], place: &Range<usize>) -> String {
     let mut hasher = blake3::Hasher::new();
     hasher.update(&bytes[..place.start]);
-    hasher.update(note::UNSEALED.as_bytes());
+    hasher.update(note::UNSEALED_CONTENT.as_bytes());
     hasher.update(&bytes[place.end..]);
     hasher.finalize().to_hex().to_string()
 }

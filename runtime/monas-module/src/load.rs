@@ -5,7 +5,7 @@ use std::ffi::c_void;
 use narukom::{Hub, TOPICS, TopicDeclaration};
 use yase::Diagnostic;
 
-use crate::module_file::{HINT, ModuleFile};
+use crate::module_file::{BUILD_HINT, ModuleFile};
 use monas_core::module::Module;
 use monas_core::module::log_bridge::{self, HostLog};
 use monas_core::module::module_abi::{self, ModuleAbi, ModuleContents, ModuleExports};
@@ -76,7 +76,7 @@ fn enter(_: &[u8], name: &str) -> Result<&'static ModuleAbi, LoadError> {
 
 /// Checks, before anything else is called, that the types of the module are those of this program.
 fn check_compatibility(gate: &ModuleAbi, name: &str) -> Result<(), LoadError> {
-    let error = |message: String| Diagnostic::error("E0363", 0..0, message).with_hint(HINT);
+    let error = |message: String| Diagnostic::error("E0363", 0..0, message).with_hint(BUILD_HINT);
     if gate.version != module_abi::VERSION {
         let (found, expected) = (gate.version, module_abi::VERSION);
         return Err(vec![error(format!(
@@ -129,7 +129,7 @@ fn check_topics(topics: &[TopicDeclaration], name: &str) -> Result<(), LoadError
         Ok(_) => Ok(()),
         Err(error) => {
             let message = format!("module `{name}` does not fit this program: {error}");
-            Err(vec![Diagnostic::error("E0364", 0..0, message).with_hint(HINT)])
+            Err(vec![Diagnostic::error("E0364", 0..0, message).with_hint(BUILD_HINT)])
         }
     }
 }

@@ -10,10 +10,10 @@ use crate::content;
 use monas_core::module::note::{self, BuildFingerprint, FingerprintMismatch};
 
 /// Maximum size of a module, in bytes.
-const MOST: u64 = 1 << 30;
+const MAX_SIZE: u64 = 1 << 30;
 
 /// How to build a compatible module.
-pub(crate) const HINT: &str = "build it like this program by `monas module build`";
+pub(crate) const BUILD_HINT: &str = "build it like this program by `monas module build`";
 
 /// The bytes of a module and the note in them.
 #[derive(Clone)]
@@ -68,7 +68,7 @@ impl ModuleFile {
         let message = format!(
             "module `{module}` does not fit this program: {field} is `{found}`, expected `{expected}`"
         );
-        Diagnostic::error("E0361", 0..0, message).with_hint(HINT)
+        Diagnostic::error("E0361", 0..0, message).with_hint(BUILD_HINT)
     }
 }
 
@@ -94,8 +94,8 @@ pub fn read_fingerprint(bytes: &[u8]) -> Result<BuildFingerprint, String> {
 
 fn bytes_of(path: &Path) -> std::io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
-    let read = monas_files::open_trusted(path)?.take(MOST + 1).read_to_end(&mut bytes)?;
-    match read as u64 > MOST {
+    let read = monas_files::open_trusted(path)?.take(MAX_SIZE + 1).read_to_end(&mut bytes)?;
+    match read as u64 > MAX_SIZE {
         true => Err(std::io::Error::new(std::io::ErrorKind::FileTooLarge, "it is too large for a module")),
         false => Ok(bytes),
     }
@@ -199,7 +199,7 @@ mod tests {
     fn a_sealed_module_whose_content_has_changed_is_refused() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("eyes.so");
-        let own = format!("{OWN}{} {}\n", note::CONTENT, note::UNSEALED);
+        let own = format!("{OWN}{} {}\n", note::CONTENT_FIELD, note::UNSEALED_CONTENT);
         let unsealed = [elf(note::SECTION, &note_of(&own)), b"code".to_vec()].concat();
         std::fs::write(&path, &unsealed).unwrap();
         assert!(ModuleFile::read(&path).is_ok(), "a module that cargo alone has built");

@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use narukom::{HostId, Timestamp, TopicSlot};
 
-use super::ENDED;
+use super::END_REASON;
 use super::agent_factory::PreparedAgent;
 use super::agent_update::{AgentCommand, AgentStatus, AgentUpdate, ChartStatus, STOPPED_BY_REQUEST};
 use super::clock::{CPU_EVERY, RunClock, cpu_time};
@@ -331,7 +331,10 @@ impl AgentInstance {
             cycles: self.recorder.number(),
             micro_steps: self.charts.iter().map(|chart| chart.runner.micro_steps()).sum(),
             activities: listed.chain(charted).collect(),
-            stopped: self.stopped.clone().filter(|reason| reason != ENDED && reason != STOPPED_BY_REQUEST),
+            stopped: self
+                .stopped
+                .clone()
+                .filter(|reason| reason != END_REASON && reason != STOPPED_BY_REQUEST),
             ..AgentStatistics::default()
         };
         let listed = self.list.iter().map(|scheduled| &scheduled.timing);

@@ -18,7 +18,7 @@ use monas_core::scheduling::Scheduling;
 use monas_core::statistics::AgentStatistics;
 
 /// Minimum interval between two status updates of a thread.
-const SHOW: Duration = Duration::from_millis(50);
+const STATUS_INTERVAL: Duration = Duration::from_millis(50);
 
 /// The shared state of an agent.
 pub(crate) struct AgentShared {
@@ -113,7 +113,7 @@ impl ThreadShared {
         current: impl FnOnce() -> (AgentStatistics, ChartStatus),
     ) {
         let Ok(mut status) = self.status.try_lock() else { return };
-        if always || now >= status.shown + SHOW {
+        if always || now >= status.shown + STATUS_INTERVAL {
             (status.statistics, status.chart) = current();
             status.shown = now;
         }

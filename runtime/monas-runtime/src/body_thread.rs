@@ -14,7 +14,7 @@ use monas_core::statistics::{BodyStatistics, Timing};
 
 /// The number of past sensings that are known. A command that was published longer ago than this
 /// many cycles has no measured latency.
-const SENSINGS: usize = 64;
+const KEPT_SENSINGS: usize = 64;
 
 /// A body that, in each of its cycles, receives the newest commands and publishes what it senses.
 pub(crate) struct BodyThread {
@@ -27,7 +27,7 @@ pub(crate) struct BodyThread {
     lateness: Timing,
     latency: Timing,
     /// The times of the last sensings, by their number.
-    sensed: [Timestamp; SENSINGS],
+    sensed: [Timestamp; KEPT_SENSINGS],
     sensings: usize,
 }
 
@@ -48,7 +48,7 @@ impl BodyThread {
             statistics,
             lateness: Timing::default(),
             latency: Timing::default(),
-            sensed: [Timestamp::ZERO; SENSINGS],
+            sensed: [Timestamp::ZERO; KEPT_SENSINGS],
             sensings: 0,
         }
     }
@@ -84,7 +84,7 @@ impl BodyThread {
             if let Some(sensed) = commanded.and_then(|commanded| self.sensing_before(commanded)) {
                 self.latency.add(now.since(sensed), None);
             }
-            self.sensed[self.sensings % SENSINGS] = now;
+            self.sensed[self.sensings % KEPT_SENSINGS] = now;
             self.sensings += 1;
             self.body.sense(now)
         });
@@ -93,8 +93,8 @@ impl BodyThread {
 
     /// The time of the last sensing until a moment, if it is known.
     fn sensing_before(&self, moment: Timestamp) -> Option<Timestamp> {
-        let known = self.sensings.saturating_sub(SENSINGS)..self.sensings;
-        known.rev().map(|number| self.sensed[number % SENSINGS]).find(|sensed| *sensed <= moment)
+        let known = self.sensings.saturating_sub(KEPT_SENSINGS)..self.sensings;
+        known.rev().map(|number| self.sensed[number % KEPT_SENSINGS]).find(|sensed| *sensed <= moment)
     }
 
     fn report(&mut self, done: Result<(), Error>) {

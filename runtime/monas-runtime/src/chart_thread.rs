@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use narukom::{Timestamp, TopicSlot};
 
-use super::ENDED;
+use super::END_REASON;
 use super::agent_shared::{AgentShared, PendingCommands, ThreadShared};
 use super::agent_update::{AgentCommand, AgentStatus, AgentUpdate, ChartStatus, STOPPED_BY_REQUEST};
 use super::clock::RunClock;
@@ -155,7 +155,10 @@ impl PoolDriver {
             activities: runner.activity_statistics().collect(),
             cycle_time: self.timing.wall(),
             cycle_percentiles: self.timing.percentiles(),
-            stopped: self.agent.reason().filter(|reason| reason != ENDED && reason != STOPPED_BY_REQUEST),
+            stopped: self
+                .agent
+                .reason()
+                .filter(|reason| reason != END_REASON && reason != STOPPED_BY_REQUEST),
             ..AgentStatistics::default()
         }
     }

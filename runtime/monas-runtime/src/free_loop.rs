@@ -7,7 +7,7 @@ use narukom::Timestamp;
 use yase::NodeId;
 
 /// From this rate on a loop is reported: calls per second that only returns of activities caused.
-const RATE: f64 = 1000.0;
+const MIN_REPORTED_RATE: f64 = 1000.0;
 
 /// The remedy for such a loop.
 pub(crate) const LOOP_REMEDY: &str =
@@ -17,7 +17,7 @@ pub(crate) const LOOP_REMEDY: &str =
 const WINDOW: Duration = Duration::from_secs(1);
 
 /// Number of recent calls from which the loop is determined.
-const RECENT: usize = 32;
+const RECENT_CALLS: usize = 32;
 
 /// Counts the calls of a chart that only returns of its activities caused.
 #[derive(Default)]
@@ -79,7 +79,7 @@ impl FreeLoop {
         }
         let rate = f64::from(self.calls) / elapsed.as_secs_f64();
         (self.since, self.calls) = (now, 0);
-        let was_looping = std::mem::replace(&mut self.is_looping, rate >= RATE);
+        let was_looping = std::mem::replace(&mut self.is_looping, rate >= MIN_REPORTED_RATE);
         match (was_looping, self.is_looping) {
             (false, true) => {
                 let is_first = !std::mem::replace(&mut self.was_reported, true);
@@ -94,7 +94,7 @@ impl FreeLoop {
 impl RecentCalls {
     /// Whether it consists of this number of last calls.
     pub(crate) fn is_filled_by(&self, calls: u32) -> bool {
-        calls as usize >= RECENT
+        calls as usize >= RECENT_CALLS
     }
 
     /// Adds a call of the activity of a state.
@@ -103,7 +103,7 @@ impl RecentCalls {
             Some(oldest) => *oldest = node,
             None => self.ring.push(node),
         }
-        self.next = (self.next + 1) % RECENT;
+        self.next = (self.next + 1) % RECENT_CALLS;
     }
 
     /// The shortest sequence of states that the recent calls repeat; without one, all their states.

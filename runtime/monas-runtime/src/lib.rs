@@ -82,7 +82,7 @@ pub use clock::cpu_time;
 pub(crate) use watchdog::Watchdog;
 
 /// Stop reason of agents at the regular end of a run.
-const ENDED: &str = "the run has ended";
+const END_REASON: &str = "the run has ended";
 
 /// Internals measured by the benches of this crate.
 #[doc(hidden)]

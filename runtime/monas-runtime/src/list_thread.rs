@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use narukom::Timestamp;
 
-use super::ENDED;
+use super::END_REASON;
 use super::agent_shared::{AgentShared, PendingCommands, ThreadShared};
 use super::agent_update::{AgentCommand, AgentUpdate, ChartStatus, STOPPED_BY_REQUEST};
 use super::clock::{CPU_EVERY, RunClock, cpu_time};
@@ -22,7 +22,7 @@ use monas_core::scheduling::Scheduling;
 use monas_core::statistics::{AgentStatistics, Timing};
 
 /// Minimum interval between warnings about overruns.
-const WARN: Duration = Duration::from_secs(1);
+const WARNING_INTERVAL: Duration = Duration::from_secs(1);
 
 /// The data owned by the thread of a list.
 pub(crate) struct ListThread {
@@ -62,7 +62,7 @@ impl ListThread {
                 self.fail(&failure);
             }
         }
-        self.list.stop(ENDED);
+        self.list.stop(END_REASON);
         self.statistics()
     }
 
@@ -188,7 +188,7 @@ impl ListThread {
     /// Logs an overrun, at most once per second, with the number of overruns since the last
     /// warning.
     fn warn(&mut self, late: Duration, now: Timestamp) {
-        if self.last_warning.is_some_and(|warned| now < warned + WARN) {
+        if self.last_warning.is_some_and(|warned| now < warned + WARNING_INTERVAL) {
             self.suppressed_warnings += 1;
             return;
         }
@@ -215,7 +215,7 @@ impl ListThread {
             stopped: self
                 .list
                 .stopped()
-                .filter(|reason| *reason != ENDED && *reason != STOPPED_BY_REQUEST)
+                .filter(|reason| *reason != END_REASON && *reason != STOPPED_BY_REQUEST)
                 .map(str::to_owned),
             ..AgentStatistics::default()
         }

@@ -36,17 +36,17 @@ use monas_core::statistics::{AgentStatistics, Timing};
 use monas_log::LogHosts;
 
 /// Timeout for the reply of a thread, unless its cycle takes longer.
-const TIMEOUT: Duration = Duration::from_secs(1);
+const REPLY_TIMEOUT: Duration = Duration::from_secs(1);
 
 /// A cycle of a list counts as stuck after this number of periods, and not before [`STUCK_LIST`].
-const PERIODS: u32 = 10;
+const STUCK_PERIODS: u32 = 10;
 const STUCK_LIST: Duration = Duration::from_secs(1);
 
 /// A call of a chart's activity, which may legitimately take long, is reported after this time.
 const STUCK_CALL: Duration = Duration::from_secs(10);
 
 /// How long the end of a run waits for calls of activities, unless an agent sets another limit.
-const SHUTDOWN: Duration = Duration::from_secs(3);
+const SHUTDOWN_TIMEOUT: Duration = Duration::from_secs(3);
 
 /// Polling interval while threads end.
 const END_POLL_INTERVAL: Duration = Duration::from_millis(2);
@@ -209,7 +209,7 @@ impl RealTimeHost {
     /// `asked`.
     pub(crate) fn abandon(&self, asked: Timestamp, now: Timestamp) {
         let late = |worker: &&AgentHandle| {
-            let limit = worker.stuck_after.unwrap_or(SHUTDOWN);
+            let limit = worker.stuck_after.unwrap_or(SHUTDOWN_TIMEOUT);
             !worker.is_finished() && now >= asked + limit
         };
         self.agents.handles.iter().filter(late).for_each(|worker| worker.shared.abandon(now));
@@ -445,7 +445,7 @@ impl AgentHandle {
 
     /// The limits for a cycle of its list and for a call of its charts.
     fn limits(&self) -> (Duration, Duration) {
-        let periods = self.frequency.map(|frequency| frequency.period().saturating_mul(PERIODS));
+        let periods = self.frequency.map(|frequency| frequency.period().saturating_mul(STUCK_PERIODS));
         let usual = periods.unwrap_or_default().max(STUCK_LIST);
         (self.stuck_after.unwrap_or(usual), self.stuck_after.unwrap_or(STUCK_CALL))
     }
@@ -491,7 +491,7 @@ impl AgentControl for AgentThreads {
 
     fn inspect_chart(&self, agent: &str, place: usize, aspect: ChartAspect) -> Result<Vec<String>, String> {
         let worker = self.agent_handle(agent).ok_or_else(|| format!("`{agent}` is not there"))?;
-        worker.shared.inspect_chart(place, aspect, TIMEOUT)
+        worker.shared.inspect_chart(place, aspect, REPLY_TIMEOUT)
     }
 
     fn cycles(&self, agent: &str) -> u64 {
@@ -521,7 +521,7 @@ impl AgentControl for AgentThreads {
             }
         }
         let starts = of_agent && orders.commands.iter().any(|command| matches!(command, AgentCommand::Start));
-        let mut said = worker.shared.apply(orders, TIMEOUT)?;
+        let mut said = worker.shared.apply(orders, REPLY_TIMEOUT)?;
         if starts && self.safe_state.load(Ordering::SeqCst) {
             said.push(SAFE_STATE.to_owned());
         }
@@ -551,7 +551,7 @@ impl AgentControl for AgentThreads {
         worker.shared.stop(STOPPED_BY_REQUEST);
         worker.end();
         let began = self.clock.now();
-        while !worker.is_finished() && self.clock.now() < began + TIMEOUT {
+        while !worker.is_finished() && self.clock.now() < began + REPLY_TIMEOUT {
             poll_pause();
         }
         if !worker.is_finished() {

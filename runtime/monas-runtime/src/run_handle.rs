@@ -20,10 +20,10 @@ use monas_core::records::{
 };
 
 /// Maximum number of external requests that wait for the next step of a simulated run.
-const WAITING: usize = 64;
+const MAX_WAITING_REQUESTS: usize = 64;
 
 /// Timeout of a request to a simulated run that is not being advanced.
-const TIMEOUT: Duration = Duration::from_secs(2);
+const REQUEST_TIMEOUT: Duration = Duration::from_secs(2);
 
 /// A handle for inspecting a run from outside: its hubs and its time. It may outlive the run.
 #[derive(Clone)]
@@ -66,7 +66,7 @@ pub(crate) struct RequestQueue {
 
 impl RequestQueue {
     pub(crate) fn new() -> RequestQueue {
-        let (sender, waiting) = sync_channel(WAITING);
+        let (sender, waiting) = sync_channel(MAX_WAITING_REQUESTS);
         RequestQueue { sender, waiting }
     }
 
@@ -288,7 +288,7 @@ impl ExternalRequests {
     /// Submits a request and waits for its reply. Withdraws the request if the run does not take
     /// it in time.
     fn submit<T>(&self, what: impl FnOnce(SyncSender<T>) -> ExternalRequest) -> Result<T, String> {
-        self.submit_within(TIMEOUT, what)
+        self.submit_within(REQUEST_TIMEOUT, what)
     }
 
     fn submit_within<T>(
@@ -300,7 +300,7 @@ impl ExternalRequests {
         let is_claimed = Arc::new(AtomicBool::new(false));
         let queued = QueuedRequest { request: what(answer), is_claimed: is_claimed.clone() };
         self.sender.try_send(queued).map_err(|error| match error {
-            TrySendError::Full(_) => format!("{WAITING} messages from outside wait already"),
+            TrySendError::Full(_) => format!("{MAX_WAITING_REQUESTS} messages from outside wait already"),
             TrySendError::Disconnected(_) => "the run has ended".to_owned(),
         })?;
         let mut reply = answered.recv_timeout(patience);

@@ -19,7 +19,7 @@ use crate::real_time_host::spawn;
 use crate::stop_handle::StopHandle;
 
 /// Interval of the observations.
-const INTERVAL: Duration = Duration::from_millis(100);
+const CHECK_INTERVAL: Duration = Duration::from_millis(100);
 
 /// A call is reported after this real time, unless its agent sets another.
 const STALL_TIMEOUT: Duration = Duration::from_secs(2);
@@ -66,7 +66,7 @@ impl StallWatchdog {
         let (watched, stopper, time) = (self.watched.clone(), self.stopper.clone(), time.clone());
         let watch = move || {
             let clock = RunClock::start();
-            while stopper.wait_until(clock.now() + INTERVAL, &clock) {
+            while stopper.wait_until(clock.now() + CHECK_INTERVAL, &clock) {
                 watched.observe(clock.now(), &time);
             }
         };

@@ -38,10 +38,10 @@ mod system {
     use super::Scheduling;
 
     /// The priorities of the system's real-time scheduling.
-    const LEVELS: std::ops::RangeInclusive<i32> = 1..=99;
+    const REAL_TIME_PRIORITIES: std::ops::RangeInclusive<i32> = 1..=99;
 
     pub(crate) fn schedule(wanted: &Scheduling) -> Result<(), String> {
-        let level = wanted.priority.clamp(*LEVELS.start(), *LEVELS.end());
+        let level = wanted.priority.clamp(*REAL_TIME_PRIORITIES.start(), *REAL_TIME_PRIORITIES.end());
         let (policy, priority) = match wanted.real_time {
             true => {
                 let value = ThreadPriorityValue::try_from(level as u8).map_err(|error| error.to_string())?;

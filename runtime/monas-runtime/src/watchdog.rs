@@ -12,7 +12,8 @@ use narukom::Timestamp;
 /// affected.
 #[derive(Default)]
 pub(crate) struct Watchdog {
-    /// Start time in nanoseconds plus one, possibly with [`CUT`]; 0 while nothing is in progress.
+    /// Start time in nanoseconds plus one, possibly with [`ABANDONED`]; 0 while nothing is in
+    /// progress.
     began: AtomicU64,
     cycle: AtomicU64,
     activity: AtomicUsize,
@@ -20,7 +21,7 @@ pub(crate) struct Watchdog {
 
 /// Marks an abandoned operation, whose results are not published. Clocks do not reach this bit in
 /// 292 years.
-const CUT: u64 = 1 << 63;
+const ABANDONED: u64 = 1 << 63;
 
 /// An operation in progress.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -37,7 +38,7 @@ impl Watchdog {
     /// Marks the start of a cycle.
     pub(crate) fn start_cycle(&self, now: Timestamp, cycle: u64) {
         self.cycle.store(cycle, Ordering::Relaxed);
-        self.began.store(now.as_nanos().saturating_add(1) & !CUT, Ordering::Release);
+        self.began.store(now.as_nanos().saturating_add(1) & !ABANDONED, Ordering::Release);
     }
 
     /// Marks the call of an activity.
@@ -47,24 +48,24 @@ impl Watchdog {
 
     /// Marks the end of the operation. Returns false if it was abandoned before.
     pub(crate) fn end_cycle(&self) -> bool {
-        self.began.swap(0, Ordering::AcqRel) & CUT == 0
+        self.began.swap(0, Ordering::AcqRel) & ABANDONED == 0
     }
 
     /// Whether the operation was abandoned.
     pub(crate) fn is_abandoned(&self) -> bool {
-        self.began.load(Ordering::Acquire) & CUT != 0
+        self.began.load(Ordering::Acquire) & ABANDONED != 0
     }
 
     /// Abandons an observed operation. Returns false if it has ended since.
     pub(crate) fn abandon(&self, under_way: WatchedCall) -> bool {
         let mark = under_way.mark;
-        self.began.compare_exchange(mark, mark | CUT, Ordering::AcqRel, Ordering::Acquire).is_ok()
+        self.began.compare_exchange(mark, mark | ABANDONED, Ordering::AcqRel, Ordering::Acquire).is_ok()
     }
 
     /// The operation in progress, if any.
     pub(crate) fn current_call(&self, now: Timestamp) -> Option<WatchedCall> {
         let mark = self.began.load(Ordering::Acquire);
-        let began = (mark & !CUT).checked_sub(1)?;
+        let began = (mark & !ABANDONED).checked_sub(1)?;
         Some(WatchedCall {
             since: now.since(Timestamp::from_nanos(began)),
             cycle: self.cycle.load(Ordering::Relaxed),

@@ -20,7 +20,7 @@ use changes::{MODELS, any_change};
 
 const CHANGES: u64 = 1000;
 /// Agents that are not changed, with their frequencies in Hz.
-const OTHERS: [(&str, f64); 3] = [("calm", 100.0), ("quick", 1000.0), ("steady", 50.0)];
+const UNCHANGED_AGENTS: [(&str, f64); 3] = [("calm", 100.0), ("quick", 1000.0), ("steady", 50.0)];
 
 fn main() -> ExitCode {
     let mut arguments = std::env::args().skip(1).map(|word| word.parse::<u64>());
@@ -48,7 +48,7 @@ fn main() -> ExitCode {
 }
 
 fn heading() -> String {
-    OTHERS.map(|(name, hertz)| format!("{:>22}", format!("{name} ({hertz} Hz): missed"))).join("  ")
+    UNCHANGED_AGENTS.map(|(name, hertz)| format!("{:>22}", format!("{name} ({hertz} Hz): missed"))).join("  ")
 }
 
 fn chart(text: &str) -> Statechart {
@@ -70,7 +70,7 @@ fn rests(_: &mut Blackboard) -> Progress {
 fn agents() -> Result<Talws, Error> {
     let registry = Registry::empty().with("W", || works).with("V", || rests);
     let mut talws = Talws::new().registry(registry.clone());
-    for (name, hertz) in OTHERS {
+    for (name, hertz) in UNCHANGED_AGENTS {
         let agent = match name {
             "steady" => Agent::statechart(name, chart("m = V")).every(Hz(hertz)),
             _ => Agent::new(name, Hz(hertz)).named_activity("W", registry.activity("W")?),
@@ -103,7 +103,7 @@ fn run(count: u64, length: Duration, seed: u64) -> Result<String, Error> {
     wait(length.saturating_sub(begun.elapsed()));
     let took = begun.elapsed();
     let agents = running.stop().agents;
-    let missed = OTHERS.map(|(name, hertz)| {
+    let missed = UNCHANGED_AGENTS.map(|(name, hertz)| {
         let agent = agents.iter().find(|agent| agent.agent == name);
         format!("{:>22}", agent.map_or_else(String::new, |agent| missed_cycles(agent, hertz, took)))
     });

@@ -12,7 +12,7 @@ use monas_soccer::functionality::geometry::angle_of;
 use monas_soccer::functionality::guard::GoalPositioning;
 use monas_soccer::functionality::head::{Gaze, HeadController};
 use monas_soccer::functionality::motion::{DesiredMotion, Skill};
-use monas_soccer::functionality::support::{AHEAD, support_place};
+use monas_soccer::functionality::support::{DISTANCE_AHEAD, support_place};
 use monas_soccer::functionality::walk::{Walk, stride_to};
 use monas_soccer::{Ball, GameState, PlayerState, Pose};
 use nalgebra::{Point2, Vector2};
@@ -197,7 +197,8 @@ impl Case {
             }
             Decision::SupportMate => {
                 let here = Point2::from(pose.translation.vector);
-                let place = pose.inverse_transform_point(&support_place(&field, pose * ball, here, AHEAD));
+                let place =
+                    pose.inverse_transform_point(&support_place(&field, pose * ball, here, DISTANCE_AHEAD));
                 (watch, inside(stride_to(avoid(place, &[ball]), place.coords.norm())))
             }
             // A kick follows a look at the ball; before a dive the head stays.

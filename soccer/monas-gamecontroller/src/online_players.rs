@@ -6,9 +6,9 @@ use std::time::Duration;
 use narukom::Timestamp;
 
 /// The age of a report up to which the connection is good.
-const GOOD: Duration = Duration::from_secs(2);
+const MAX_AGE_GOOD: Duration = Duration::from_secs(2);
 /// The age of a report up to which the connection is bad; then the player is offline.
-const BAD: Duration = Duration::from_secs(4);
+const MAX_AGE_BAD: Duration = Duration::from_secs(4);
 
 /// The connection of a player.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -44,8 +44,8 @@ impl OnlinePlayers {
     /// The connection of a player.
     pub fn connection(&self, team: u8, player: u8, now: Timestamp) -> Connection {
         match self.reported.get(&(team, player)).map(|reported| now.since(*reported)) {
-            Some(age) if age <= GOOD => Connection::Good,
-            Some(age) if age <= BAD => Connection::Bad,
+            Some(age) if age <= MAX_AGE_GOOD => Connection::Good,
+            Some(age) if age <= MAX_AGE_BAD => Connection::Bad,
             _ => Connection::Offline,
         }
     }

@@ -9,11 +9,11 @@ use crate::{
 };
 
 /// Seconds of READY before a kick-off, and before a penalty kick.
-const READY: (i16, i16) = (45, 30);
+const READY_SECONDS: (i16, i16) = (45, 30);
 /// Seconds for which the other team stays away from the ball: after a kick-off, and in a set play.
-const RESTART: (i16, i16) = (10, 30);
+const RESTART_SECONDS: (i16, i16) = (10, 30);
 /// Seconds of a penalty, and of one for motion or position in SET.
-const PENALTY: (u8, u8) = (45, 15);
+const PENALTY_SECONDS: (u8, u8) = (45, 15);
 
 /// A game that an operator decides.
 ///
@@ -95,7 +95,7 @@ impl OperatedGame {
                 let team = team.map(|team| self.team(team)).transpose()?;
                 self.data.set_play = None;
                 self.data.kicking_team = team.map(|team| self.data.teams[team].number);
-                self.enter(LeagueState::Ready, READY.0);
+                self.enter(LeagueState::Ready, READY_SECONDS.0);
             }
             OperatorCommand::Set => {
                 self.require(&[LeagueState::Ready], "SET follows READY")?;
@@ -103,7 +103,7 @@ impl OperatedGame {
             }
             OperatorCommand::Play => {
                 self.require(&[LeagueState::Set], "PLAYING follows SET")?;
-                self.enter(LeagueState::Playing, RESTART.0);
+                self.enter(LeagueState::Playing, RESTART_SECONDS.0);
             }
             OperatorCommand::Finish => self.stop(LeagueState::Finished),
             OperatorCommand::Half => self.switch_half()?,
@@ -175,7 +175,7 @@ impl OperatedGame {
         *score = score.saturating_add(1);
         self.data.set_play = None;
         self.data.kicking_team = Some(self.data.teams[1 - team].number);
-        self.enter(LeagueState::Ready, READY.0);
+        self.enter(LeagueState::Ready, READY_SECONDS.0);
         Ok(())
     }
 
@@ -186,8 +186,8 @@ impl OperatedGame {
         self.data.set_play = Some(kind);
         self.data.kicking_team = Some(self.data.teams[team].number);
         match kind {
-            SetPlay::PenaltyKick => self.enter(LeagueState::Ready, READY.1),
-            _ => self.enter(LeagueState::Playing, RESTART.1),
+            SetPlay::PenaltyKick => self.enter(LeagueState::Ready, READY_SECONDS.1),
+            _ => self.enter(LeagueState::Playing, RESTART_SECONDS.1),
         }
         Ok(())
     }
@@ -201,9 +201,9 @@ impl OperatedGame {
     ) -> Result<(), String> {
         self.permit(penalty.number(self.rules()))?;
         let usual = match penalty {
-            Penalty::MotionInSet | Penalty::IllegalPositionInSet => PENALTY.1,
+            Penalty::MotionInSet | Penalty::IllegalPositionInSet => PENALTY_SECONDS.1,
             Penalty::Substitute | Penalty::SentOff | Penalty::Manual => 0,
-            _ => PENALTY.0,
+            _ => PENALTY_SECONDS.0,
         };
         let player = self.player(team, player)?;
         (player.penalty, player.seconds_left) = (Some(penalty), seconds.unwrap_or(usual));

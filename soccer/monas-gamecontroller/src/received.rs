@@ -6,7 +6,7 @@ use std::net::{SocketAddr, UdpSocket};
 use crate::{Error, Peer};
 
 /// Longer than any packet of the protocol, so that one that is too long is seen as such.
-const LONGEST: usize = 256;
+const BUFFER_SIZE: usize = 256;
 
 /// A packet that has arrived, or why it cannot be read.
 #[derive(Clone, PartialEq, Debug)]
@@ -29,7 +29,7 @@ pub(crate) fn next<T>(
     socket: &UdpSocket,
     decode: impl FnOnce(&[u8]) -> Result<T, Error>,
 ) -> io::Result<Option<Received<T>>> {
-    let mut bytes = [0; LONGEST];
+    let mut bytes = [0; BUFFER_SIZE];
     match socket.recv_from(&mut bytes) {
         Ok((length, from)) => Ok(Some(Received { from: Peer(from.ip()), content: decode(&bytes[..length]) })),
         Err(error) if error.kind() == io::ErrorKind::WouldBlock => Ok(None),

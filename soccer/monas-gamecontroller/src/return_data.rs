@@ -7,7 +7,7 @@ use crate::{Error, ErrorKind};
 const HEADER: [u8; 4] = *b"RGrt";
 const VERSION: u8 = 4;
 /// The age of a ball that was never seen.
-const NEVER: f32 = -1.0;
+const NEVER_SEEN: f32 = -1.0;
 
 /// The length of return data in bytes.
 pub const RETURN_DATA_LENGTH: usize = 32;
@@ -72,7 +72,7 @@ impl ReturnData {
         packet.extend([VERSION, player(self.player)?, self.team, self.is_fallen.into()]);
         let [x, y, heading] = self.pose;
         let [ball_x, ball_y] = self.ball;
-        for number in [x, y, heading, self.ball_age.unwrap_or(NEVER), ball_x, ball_y] {
+        for number in [x, y, heading, self.ball_age.unwrap_or(NEVER_SEEN), ball_x, ball_y] {
             if number.is_nan() {
                 return Err(Error::new(ErrorKind::Value, "a pose, a position or an age is not a number"));
             }

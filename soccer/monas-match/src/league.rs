@@ -10,9 +10,9 @@ use monas_sim::SharedField;
 use crate::summary::MatchEvent;
 
 /// The most packets that are read in one step; more would be a flood.
-const PACKETS: usize = 64;
+const MAX_PACKETS_PER_STEP: usize = 64;
 /// The most different problems that are reported.
-const PROBLEMS: usize = 16;
+const MAX_PROBLEMS: usize = 16;
 
 /// Counts of packets that a match has exchanged with a GameController, or as one.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
@@ -56,7 +56,7 @@ impl LeagueJournal {
 
     /// Adds a problem, if it is a new one and not one of too many.
     pub(crate) fn warn(&mut self, problem: String) {
-        if self.problems.len() < PROBLEMS && !self.problems.contains(&problem) {
+        if self.problems.len() < MAX_PROBLEMS && !self.problems.contains(&problem) {
             self.note(problem.clone());
             self.problems.push(problem);
         }
@@ -68,7 +68,7 @@ impl LeagueJournal {
         mut receive: impl FnMut() -> std::io::Result<Option<Received<T>>>,
     ) -> Vec<(Peer, T)> {
         let mut packets = Vec::new();
-        for _ in 0..PACKETS {
+        for _ in 0..MAX_PACKETS_PER_STEP {
             match receive() {
                 Ok(None) => break,
                 Ok(Some(Received { from, content: Ok(content) })) => packets.push((from, content)),

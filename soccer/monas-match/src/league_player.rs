@@ -15,9 +15,9 @@ use crate::league::{LeagueEnd, LeagueJournal};
 /// Time between two reports of a robot.
 const REPORT_EVERY: Duration = Duration::from_secs(1);
 /// Time without control data after which the GameController counts as silent.
-const SILENCE: Duration = Duration::from_secs(4);
+const CONTROL_TIMEOUT: Duration = Duration::from_secs(4);
 /// Metres to the packet's millimetres.
-const MILLIMETRES: f64 = 1000.0;
+const MILLIMETRES_PER_METRE: f64 = 1000.0;
 
 /// The robots of a match as players of the league.
 pub(crate) struct LeaguePlayers {
@@ -119,7 +119,7 @@ impl LeagueEnd for LeaguePlayers {
             }
         }
         let Some((referee, heard)) = self.referee else { return Ok(()) };
-        if now.since(heard) > SILENCE && !self.is_silent {
+        if now.since(heard) > CONTROL_TIMEOUT && !self.is_silent {
             self.is_silent = true;
             journal.note("the GameController is silent: its last decision holds");
         }
@@ -133,7 +133,7 @@ impl LeagueEnd for LeaguePlayers {
 
 impl Belief {
     fn report(&self, team: u8, player: u8, now: Timestamp) -> ReturnData {
-        let millimetres = |metres: f64| (metres * MILLIMETRES) as f32;
+        let millimetres = |metres: f64| (metres * MILLIMETRES_PER_METRE) as f32;
         let seen = (self.ball.seen_at > 0).then(|| now.since(Timestamp::from_nanos(self.ball.seen_at)));
         ReturnData {
             player,

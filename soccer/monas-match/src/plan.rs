@@ -172,7 +172,7 @@ enum LeagueSetup {
 }
 
 /// The longest match that a GameController elsewhere decides.
-const LONGEST: Duration = Duration::from_secs(24 * 3600);
+const MAX_EXTERNAL_MATCH: Duration = Duration::from_secs(24 * 3600);
 
 /// A robot of a match and its agents.
 #[derive(Debug)]
@@ -360,7 +360,7 @@ impl MatchPlan {
     /// The length of the match in simulated time.
     pub fn length(&self) -> Duration {
         if matches!(self.league, Some(LeagueSetup::Players(_))) {
-            return LONGEST;
+            return MAX_EXTERNAL_MATCH;
         }
         Duration::from_secs_f64(2.0 * self.rules.half_duration)
     }

@@ -13,7 +13,7 @@ use monas_sim::GameState;
 use narukom::Timestamp;
 
 /// Longer than a packet needs on the loopback interface, in steps of the test.
-const SOON: u32 = 2000;
+const MAX_DELIVERY_STEPS: u32 = 2000;
 
 fn plan() -> MatchPlan {
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../config/match.xml");
@@ -34,7 +34,7 @@ fn advance(running: &mut RunningMatch, by: Duration) {
 
 /// Advances a match in small steps until something holds.
 fn until(running: &mut RunningMatch, holds: impl Fn(&RunningMatch) -> bool) {
-    for _ in 0..SOON {
+    for _ in 0..MAX_DELIVERY_STEPS {
         if holds(running) {
             return;
         }

@@ -12,7 +12,7 @@ use zune_jpeg::zune_core::options::DecoderOptions;
 use crate::png_image::encode_png;
 
 /// The largest side of an image, pixels: what vision accepts.
-const LARGEST: usize = 4096;
+const MAX_SIDE: usize = 4096;
 
 /// An image with three bytes for each pixel.
 pub struct RgbImage {
@@ -62,8 +62,8 @@ impl RgbImage {
     fn from_jpeg(content: &[u8]) -> Result<RgbImage, String> {
         let options = DecoderOptions::default()
             .jpeg_set_out_colorspace(ColorSpace::RGB)
-            .set_max_width(LARGEST)
-            .set_max_height(LARGEST);
+            .set_max_width(MAX_SIDE)
+            .set_max_height(MAX_SIDE);
         let mut decoder = JpegDecoder::new_with_options(ZCursor::new(content), options);
         let bytes = decoder
             .decode()
@@ -86,10 +86,10 @@ impl RgbImage {
 }
 
 fn check_size(width: usize, height: usize) -> Result<(), String> {
-    match width <= LARGEST && height <= LARGEST {
+    match width <= MAX_SIDE && height <= MAX_SIDE {
         true => Ok(()),
         false => {
-            Err(format!("an image of {width} x {height} pixels; at most {LARGEST} x {LARGEST} are read"))
+            Err(format!("an image of {width} x {height} pixels; at most {MAX_SIDE} x {MAX_SIDE} are read"))
         }
     }
 }

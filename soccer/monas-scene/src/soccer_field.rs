@@ -26,8 +26,8 @@ const BALL: &str = "soccer/ball";
 const FIELD_LINES: &str = "soccer/field_lines";
 
 /// Carpet around the lines, and measures that messages do not have: those of the SPL of 2010.
-const BORDER: f64 = 0.7;
-const CIRCLE: f64 = 0.6;
+const CARPET_BORDER: f64 = 0.7;
+const CIRCLE_RADIUS: f64 = 0.6;
 const BALL_RADIUS: f64 = 0.05;
 const GOAL_DEPTH: f64 = 0.4;
 
@@ -103,9 +103,9 @@ fn ground(messages: &SceneMessages<'_>) -> Ground {
         rectangle(-half_length, -area / 2.0, depth, area, None),
         rectangle(half_length - depth, -area / 2.0, depth, area, None),
         GroundMark::Line { ends: [0.0, -half_width, 0.0, half_width] },
-        GroundMark::Circle { x: 0.0, y: 0.0, radius: CIRCLE },
+        GroundMark::Circle { x: 0.0, y: 0.0, radius: CIRCLE_RADIUS },
     ];
-    Ground { width: length + 2.0 * BORDER, height: width + 2.0 * BORDER, marks }
+    Ground { width: length + 2.0 * CARPET_BORDER, height: width + 2.0 * CARPET_BORDER, marks }
 }
 
 fn bodies(truth: &Value, messages: &SceneMessages<'_>) -> Vec<Body> {
@@ -301,7 +301,10 @@ mod tests {
         let bodies: Vec<_> =
             picture.bodies.iter().map(|body| (body.host.as_str(), body.group, body.upright)).collect();
         assert_eq!(bodies, [("", 1, false), ("red-2", 0, false)]);
-        assert_eq!((picture.ground.width, picture.ground.height), (9.0 + 2.0 * BORDER, 6.0 + 2.0 * BORDER));
+        assert_eq!(
+            (picture.ground.width, picture.ground.height),
+            (9.0 + 2.0 * CARPET_BORDER, 6.0 + 2.0 * CARPET_BORDER)
+        );
         assert_eq!(picture.objects.len(), 1);
     }
 }

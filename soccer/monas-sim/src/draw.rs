@@ -9,10 +9,10 @@ use crate::{
 use std::fmt::{self, Write};
 
 /// Units of the picture in a metre.
-const SCALE: f64 = 100.0;
+const UNITS_PER_METRE: f64 = 100.0;
 
 /// Height of the scoreboard above the field, in units of the picture.
-const BOARD: f64 = 64.0;
+const SCOREBOARD_HEIGHT: f64 = 64.0;
 
 /// Draws the world: carpet, lines, goals, robots with their numbers and headings, the ball and a
 /// scoreboard.
@@ -56,8 +56,8 @@ impl SvgDrawing {
 
     /// Draws carpet, lines and goals. Returns the width of the picture.
     pub(crate) fn begin(&mut self, field: &FieldGeometry) -> Result<f64, fmt::Error> {
-        let size = self.far * (2.0 * SCALE);
-        let height = size.y + BOARD;
+        let size = self.far * (2.0 * UNITS_PER_METRE);
+        let height = size.y + SCOREBOARD_HEIGHT;
         let width = size.x;
         writeln!(
             self.text,
@@ -80,23 +80,30 @@ impl SvgDrawing {
         let (x, y) = self.place(Vector::new(-field.half_length(), -field.half_width() - field.border * 0.6));
         writeln!(
             self.text,
-            r##"<path d="M{x:.0} {y:.0}m0 -5v10m0 -5h{SCALE}m0 -5v10" stroke="#f4f7f5" stroke-width="2" fill="none"/>"##
+            r##"<path d="M{x:.0} {y:.0}m0 -5v10m0 -5h{UNITS_PER_METRE}m0 -5v10" stroke="#f4f7f5" stroke-width="2" fill="none"/>"##
         )?;
-        let (x, y) = (x + SCALE + 8.0, y + 4.0);
+        let (x, y) = (x + UNITS_PER_METRE + 8.0, y + 4.0);
         writeln!(self.text, r##"<text x="{x:.0}" y="{y:.0}" font-size="13" fill="#f4f7f5">1 m</text>"##)
     }
 
     /// Converts a point of the field to picture coordinates.
     pub(crate) fn place(&self, point: Vector) -> (f64, f64) {
-        ((point.x + self.far.x) * SCALE, (self.far.y - point.y) * SCALE + BOARD)
+        (
+            (point.x + self.far.x) * UNITS_PER_METRE,
+            (self.far.y - point.y) * UNITS_PER_METRE + SCOREBOARD_HEIGHT,
+        )
     }
 
     fn carpet(&mut self, size: Vector) -> fmt::Result {
         let (width, height) = (size.x, size.y);
-        writeln!(self.text, r##"<rect width="{width:.0}" height="{:.0}" fill="#1d2733"/>"##, height + BOARD)?;
         writeln!(
             self.text,
-            r##"<rect y="{BOARD}" width="{width:.0}" height="{height:.0}" fill="#2f8f4e"/>"##
+            r##"<rect width="{width:.0}" height="{:.0}" fill="#1d2733"/>"##,
+            height + SCOREBOARD_HEIGHT
+        )?;
+        writeln!(
+            self.text,
+            r##"<rect y="{SCOREBOARD_HEIGHT}" width="{width:.0}" height="{height:.0}" fill="#2f8f4e"/>"##
         )?;
         const STRIPES: u32 = 10;
         let stripe = width / f64::from(STRIPES);
@@ -104,14 +111,14 @@ impl SvgDrawing {
             let x = f64::from(number) * stripe;
             writeln!(
                 self.text,
-                r##"<rect x="{x:.1}" y="{BOARD}" width="{stripe:.1}" height="{height:.0}" fill="#2a8347"/>"##
+                r##"<rect x="{x:.1}" y="{SCOREBOARD_HEIGHT}" width="{stripe:.1}" height="{height:.0}" fill="#2a8347"/>"##
             )?;
         }
         Ok(())
     }
 
     fn lines(&mut self, field: &FieldGeometry) -> fmt::Result {
-        let width = field.line_width * SCALE;
+        let width = field.line_width * UNITS_PER_METRE;
         writeln!(
             self.text,
             r##"<g fill="none" stroke="#f4f7f5" stroke-width="{width:.1}" stroke-linejoin="round">"##
@@ -128,14 +135,14 @@ impl SvgDrawing {
         let (_, bottom) = self.place(Vector::new(0.0, -field.half_width()));
         writeln!(self.text, r#"<path d="M{x:.1} {top:.1}V{bottom:.1}"/>"#)?;
         let (x, y) = self.place(Vector::zeros());
-        let radius = field.centre_circle_radius * SCALE;
+        let radius = field.centre_circle_radius * UNITS_PER_METRE;
         writeln!(self.text, r#"<circle cx="{x:.1}" cy="{y:.1}" r="{radius:.1}"/>"#)?;
         writeln!(self.text, "</g>")
     }
 
     fn rectangle(&mut self, one: Vector, other: Vector) -> fmt::Result {
         let (x, y) = self.place(Vector::new(one.x.min(other.x), one.y.max(other.y)));
-        let size = (one - other).abs() * SCALE;
+        let size = (one - other).abs() * UNITS_PER_METRE;
         writeln!(self.text, r#"<rect x="{x:.1}" y="{y:.1}" width="{:.1}" height="{:.1}"/>"#, size.x, size.y)
     }
 
@@ -162,7 +169,7 @@ impl SvgDrawing {
         writeln!(self.text, "</g>")?;
         for post in posts {
             let (x, y) = self.place(post);
-            let radius = field.post_radius * SCALE + 1.0;
+            let radius = field.post_radius * UNITS_PER_METRE + 1.0;
             writeln!(self.text, r#"<circle cx="{x:.1}" cy="{y:.1}" r="{radius:.1}" stroke="none"/>"#)?;
         }
         writeln!(self.text, "</g>")
@@ -195,7 +202,7 @@ impl SvgDrawing {
     /// A robot from above: view, feet, shoulders and head.
     fn upright(&mut self, world: &SimulatedWorld, robot: &RobotState, shirt: &str) -> fmt::Result {
         let physics = world.physics();
-        let radius = physics.robot_radius * SCALE;
+        let radius = physics.robot_radius * UNITS_PER_METRE;
         let gaze = -robot.head_yaw.to_degrees();
         let half_view = physics.camera_view_horizontal / 2.0;
         let (sin, cos) = libm::sincos(half_view);
@@ -205,9 +212,9 @@ impl SvgDrawing {
             r##"<path transform="rotate({gaze:.1})" d="M0 0L{reach_x:.1} {:.1}A70 70 0 0 1 {reach_x:.1} {reach_y:.1}Z" fill="#fff" fill-opacity="0.13"/>"##,
             -reach_y
         )?;
-        let feet = (-physics.foot_back * SCALE, -physics.foot_side * SCALE);
-        let long = (physics.foot_front + physics.foot_back) * SCALE;
-        let wide = physics.foot_side * SCALE * 0.85;
+        let feet = (-physics.foot_back * UNITS_PER_METRE, -physics.foot_side * UNITS_PER_METRE);
+        let long = (physics.foot_front + physics.foot_back) * UNITS_PER_METRE;
+        let wide = physics.foot_side * UNITS_PER_METRE * 0.85;
         for y in [feet.1, -feet.1 - wide] {
             writeln!(
                 self.text,
@@ -237,8 +244,8 @@ impl SvgDrawing {
             BodyPhase::Falling(direction) | BodyPhase::Fallen(direction) => (direction, physics.lying_reach),
             _ => return Ok(()),
         };
-        let end = direction.vector() * ((reach - physics.lying_radius) * SCALE);
-        let thick = 2.0 * physics.lying_radius * SCALE;
+        let end = direction.vector() * ((reach - physics.lying_radius) * UNITS_PER_METRE);
+        let thick = 2.0 * physics.lying_radius * UNITS_PER_METRE;
         writeln!(
             self.text,
             r##"<path d="M0 0L{:.1} {:.1}" stroke="{shirt}" stroke-width="{thick:.1}" stroke-linecap="round"/>"##,
@@ -249,7 +256,7 @@ impl SvgDrawing {
 
     fn ball(&mut self, world: &SimulatedWorld) -> fmt::Result {
         let (x, y) = self.place(world.ball().position);
-        let radius = world.physics().ball_radius * SCALE + 1.5;
+        let radius = world.physics().ball_radius * UNITS_PER_METRE + 1.5;
         writeln!(
             self.text,
             r##"<ellipse cx="{:.1}" cy="{:.1}" rx="{radius}" ry="{radius}" opacity="0.35"/>"##,

@@ -6,7 +6,7 @@ use crate::pose::Vector;
 use crate::{SimulatedWorld, TeamColour};
 
 /// Headings in steps of 45 degrees, counter-clockwise.
-const ARROWS: [char; 8] = ['→', '↗', '↑', '↖', '←', '↙', '↓', '↘'];
+const HEADING_ARROWS: [char; 8] = ['→', '↗', '↑', '↖', '←', '↙', '↓', '↘'];
 
 /// A character of the picture with its colour, as in SGR sequences.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -53,7 +53,7 @@ pub fn render_text(world: &SimulatedWorld, columns: usize, rows: usize, is_colou
     for robot in world.robots().iter().filter(|robot| robot.on_field) {
         let (column, row) = cell_of(robot.pose.position);
         let eighth = (robot.pose.heading / FRAC_PI_4).round() as i64;
-        let arrow = ARROWS[eighth.rem_euclid(8) as usize];
+        let arrow = HEADING_ARROWS[eighth.rem_euclid(8) as usize];
         let heading = if robot.phase.is_upright() { arrow } else { '_' };
         let (letter, colour) = match colours[robot.team] {
             TeamColour::Blue => ('b', "1;34"),

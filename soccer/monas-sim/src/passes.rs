@@ -8,13 +8,13 @@ use crate::state::WorldView;
 use crate::{EventKind, STEP, Vector};
 
 /// A ball that has rolled less than this from its kick has not left the kicker, m.
-const LEFT: f64 = 0.3;
+const MIN_ROLL: f64 = 0.3;
 
 /// A ball that is received later than this after its kick was found, not passed, s.
-const LATEST: f64 = 10.0;
+const MAX_PASS_TIME: f64 = 10.0;
 
 /// A shot later than this after the reception is none after a pass, s.
-const HELD: f64 = 20.0;
+const MAX_HOLD_TIME: f64 = 20.0;
 
 /// The kick or the reception that is being followed.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -52,12 +52,12 @@ impl PassTracker {
                 let (from, after) = (*from, *age);
                 let others = || scene.touchers().filter(|robot| *robot != from);
                 let is_taken = others().any(|robot| team(robot) != team(from));
-                let is_dribbled = length > LEFT && scene.touchers().any(|robot| robot == from);
-                if after > LATEST || is_taken || is_dribbled {
+                let is_dribbled = length > MIN_ROLL && scene.touchers().any(|robot| robot == from);
+                if after > MAX_PASS_TIME || is_taken || is_dribbled {
                     self.phase = PassPhase::None;
                 } else if let Some(to) = others().next() {
                     self.phase = PassPhase::None;
-                    if length > LEFT {
+                    if length > MIN_ROLL {
                         self.phase = PassPhase::Received { by: to, age: 0.0 };
                         events.push(EventKind::Pass { from, to, after, length });
                     }
@@ -66,7 +66,7 @@ impl PassTracker {
             PassPhase::Received { by, age } => {
                 *age += STEP;
                 let by = *by;
-                if *age > HELD || scene.touchers().any(|robot| team(robot) != team(by)) {
+                if *age > MAX_HOLD_TIME || scene.touchers().any(|robot| team(robot) != team(by)) {
                     self.phase = PassPhase::None;
                 }
             }

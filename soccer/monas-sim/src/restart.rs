@@ -1,13 +1,13 @@
 //! Positions at which the referee puts robots and ball.
 
-use crate::state::{GOALIE, WorldView};
+use crate::state::{GOALIE_NUMBER, WorldView};
 use crate::{FieldGeometry, FieldSide, Physics, Pose, RobotState, Vector};
 
 /// Distance from the ball of the robot that kicks off, m.
 const KICK_OFF_DISTANCE: f64 = 0.3;
 
 /// Least distance between a placed ball or robot and another robot, m.
-const CLEARANCE: f64 = 0.08;
+const MIN_CLEARANCE: f64 = 0.08;
 
 /// Positions of field players that do not kick off, as fractions of half the length and half the
 /// width towards the own goal, in the order of their numbers.
@@ -34,9 +34,9 @@ pub(crate) fn kick_off_pose(
     number: u8,
     rank: usize,
 ) -> Pose {
-    let clear_of_circle = field.centre_circle_radius + physics.robot_radius + CLEARANCE;
+    let clear_of_circle = field.centre_circle_radius + physics.robot_radius + MIN_CLEARANCE;
     let own_half = match (number, rank) {
-        (GOALIE, _) => Vector::new(-field.half_length() + physics.robot_radius, 0.0),
+        (GOALIE_NUMBER, _) => Vector::new(-field.half_length() + physics.robot_radius, 0.0),
         (_, 0) if kicks_off => Vector::new(-KICK_OFF_DISTANCE, 0.0),
         (_, 0) => Vector::new(-clear_of_circle, 0.0),
         _ => spread(field, rank, clear_of_circle),
@@ -46,7 +46,7 @@ pub(crate) fn kick_off_pose(
 
 fn spread(field: &FieldGeometry, rank: usize, clear_of_circle: f64) -> Vector {
     let (x, y) = PLACES[(rank - 1) % PLACES.len()];
-    let least_x = field.goal_area_depth + CLEARANCE - field.half_length();
+    let least_x = field.goal_area_depth + MIN_CLEARANCE - field.half_length();
     let place = Vector::new((x * field.half_length()).max(least_x), y * field.half_width());
     if place.norm() >= clear_of_circle { place } else { place * (clear_of_circle / place.norm()) }
 }
@@ -87,7 +87,7 @@ pub(crate) fn free_for_ball(scene: &WorldView<'_>, wanted: Vector) -> Vector {
     let is_free = |place: Vector| {
         scene.on_field().all(|(_, robot)| {
             let reach = if robot.phase.is_upright() { reach } else { lying };
-            (robot.pose.position - place).norm() > reach + CLEARANCE
+            (robot.pose.position - place).norm() > reach + MIN_CLEARANCE
         })
     };
     nearest(wanted, limit, is_free)
@@ -99,7 +99,7 @@ pub(crate) fn return_pose(scene: &WorldView<'_>, robot: usize) -> Pose {
     let side = -1f64.copysign(scene.ball.position.y);
     let wanted = Vector::new(0.0, side * scene.field.half_width());
     let limit = Vector::new(scene.field.half_length(), scene.field.half_width());
-    let apart = 2.0 * scene.physics.robot_radius + CLEARANCE;
+    let apart = 2.0 * scene.physics.robot_radius + MIN_CLEARANCE;
     let is_free = |place: Vector| {
         let mut others = scene.on_field().filter(|(index, _)| *index != robot);
         others.all(|(_, other)| (other.pose.position - place).norm() > apart)
@@ -178,7 +178,7 @@ mod tests {
                         assert!(field.contains(pose.position), "{number} {pose:?}");
                         assert!(pose.position.x * defends.sign() > 0.0, "{number} {pose:?}");
                         assert!(
-                            number == GOALIE || !field.in_goal_area(defends, pose.position),
+                            number == GOALIE_NUMBER || !field.in_goal_area(defends, pose.position),
                             "{number} {pose:?}"
                         );
                         let outside = pose.position.norm() > field.centre_circle_radius;

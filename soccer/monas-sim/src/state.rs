@@ -37,12 +37,12 @@ pub struct RobotState {
 impl RobotState {
     /// Whether this is its team's goalie, by its number.
     pub fn is_goalie(&self) -> bool {
-        self.number == GOALIE
+        self.number == GOALIE_NUMBER
     }
 }
 
 /// The number of a goalie (SPL 2010).
-pub(crate) const GOALIE: u8 = 1;
+pub(crate) const GOALIE_NUMBER: u8 = 1;
 
 /// The ground truth at one time, as input of referee and cameras.
 #[derive(Clone, Copy)]

@@ -13,7 +13,7 @@ use crate::return_tracker::ReturnTracker;
 use crate::rng::RandomStream;
 use crate::shots::ShotTracker;
 use crate::snapshot::Snapshot;
-use crate::state::GOALIE;
+use crate::state::GOALIE_NUMBER;
 use crate::{
     Announcement, BallState, Buttons, Command, Error, ErrorKind, EventKind, FieldGeometry, GameOrder,
     GameState, MatchRules, Physics, Pose, Radio, RobotSetup, RobotState, STEP, Senses, Setup, Side,
@@ -57,7 +57,7 @@ struct SensorState {
 }
 
 /// How long a person holds a robot in the air before it stands at its new place, s.
-const LIFTED: f64 = 0.5;
+const CARRY_TIME: f64 = 0.5;
 
 impl SimulatedWorld {
     /// Builds a world. Robots stand at their kick-off positions, the ball lies at the centre.
@@ -457,7 +457,7 @@ impl SimulatedWorld {
             let defends = self.referee.defends()[team];
             let kicks_off = self.referee.kick_off_team() == team;
             let rank = ranks[team];
-            ranks[team] += usize::from(number != GOALIE);
+            ranks[team] += usize::from(number != GOALIE_NUMBER);
             if on_field && must_be_placed(self, robot) {
                 let (field, physics) = (&self.now.field, &self.now.physics);
                 let wanted = restart::kick_off_pose(field, physics, defends, kicks_off, number, rank);
@@ -485,7 +485,7 @@ impl SimulatedWorld {
     /// A person places a robot, whose feet detect that it is lifted.
     fn put_down(&mut self, robot: usize, pose: Pose) {
         self.set_robot(robot, pose);
-        self.sensors[robot].lifted_until = self.steps + (LIFTED / STEP) as u64;
+        self.sensors[robot].lifted_until = self.steps + (CARRY_TIME / STEP) as u64;
     }
 
     fn set_ball(&mut self, position: Vector, velocity: Vector) {
@@ -565,8 +565,8 @@ fn is_misplaced(world: &SimulatedWorld, robot: usize) -> bool {
 /// if it does not approach, where it lies. Both in the frame of the body.
 fn passing_side(ball: Vector, velocity: Vector) -> Side {
     /// A ball slower than this does not approach, m/s.
-    const COMING: f64 = 0.05;
-    let comes = velocity.x < -COMING && ball.x > 0.0;
+    const MIN_APPROACH_SPEED: f64 = 0.05;
+    let comes = velocity.x < -MIN_APPROACH_SPEED && ball.x > 0.0;
     Side::of(if comes { ball.y - velocity.y / velocity.x * ball.x } else { ball.y })
 }
 

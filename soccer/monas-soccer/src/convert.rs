@@ -28,7 +28,7 @@ use crate::{
 };
 
 /// `time_to_cross` of a ball that will not cross, seconds.
-const NEVER: f64 = 1e6;
+const NO_CROSSING: f64 = 1e6;
 
 /// The distance behind the robot of the point from which `crossing_bearing` is measured, metres.
 const CROSSING_DEPTH: f64 = 0.6;
@@ -61,7 +61,7 @@ impl Ball {
     /// Sets where it crosses the robot's lateral axis, if it does.
     pub(crate) fn with_crossing(self, crossing: Option<Crossing>) -> Ball {
         let approaching = crossing.is_some();
-        let crossing = crossing.unwrap_or(Crossing { time: NEVER, y: 0.0 });
+        let crossing = crossing.unwrap_or(Crossing { time: NO_CROSSING, y: 0.0 });
         let crossing_bearing = if approaching { libm::atan2(crossing.y, CROSSING_DEPTH) } else { 0.0 };
         Ball { approaching, time_to_cross: crossing.time, crossing_y: crossing.y, crossing_bearing, ..self }
     }

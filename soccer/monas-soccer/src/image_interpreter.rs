@@ -166,13 +166,15 @@ fn longest(mut lines: Vec<LineSegment>) -> Vec<FieldLine> {
 /// Whether the ends of a line are on another, or near it.
 fn lies_on(line: &LineSegment, other: &LineSegment) -> bool {
     /// Distance that is near, m: lines of a field are farther apart.
-    const NEAR: f64 = 0.12;
+    const SAME_LINE_DISTANCE: f64 = 0.12;
     let [a, b] = other.ends.map(|end| end.position);
     let along = (b - a) / (b - a).norm().max(1e-9);
     let is_on = |point: Point2<f64>| {
         let away = point - a;
         let place = away.dot(&along);
-        away.perp(&along).abs() < NEAR && place > -NEAR && place < (b - a).norm() + NEAR
+        away.perp(&along).abs() < SAME_LINE_DISTANCE
+            && place > -SAME_LINE_DISTANCE
+            && place < (b - a).norm() + SAME_LINE_DISTANCE
     };
     line.ends.iter().all(|end| is_on(end.position))
 }

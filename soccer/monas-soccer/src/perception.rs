@@ -60,7 +60,7 @@ pub struct Perception {
 const NO_ROBOT: f64 = 1e6;
 
 /// Standard deviation of a pose that the robot reaches by placing itself: metres and radians.
-const PLACED: (f64, f64) = (0.05, 0.05);
+const PLACEMENT_DEVIATION: (f64, f64) = (0.05, 0.05);
 
 /// Least length of a line, and the farthest distance of its middle, that corrects the pose, metres.
 const LEAST_LINE: f64 = 0.15;
@@ -100,8 +100,8 @@ impl Perception {
         let poses = match game.placement() {
             Placement::KnownPose => vec![PoseEstimate {
                 field_from_robot: geometry::pose(game.placed_x, game.placed_y, game.placed_heading),
-                place_deviation: PLACED.0,
-                turn_deviation: PLACED.1,
+                place_deviation: PLACEMENT_DEVIATION.0,
+                turn_deviation: PLACEMENT_DEVIATION.1,
             }],
             Placement::OwnHalf => placement::Placement::OwnHalf.poses(&field),
             Placement::HalfwayLine => placement::Placement::HalfwayLine.poses(&field),

@@ -85,10 +85,10 @@ impl Camera {
     /// The point at a height above the ground that a pixel shows; none at or above the horizon.
     pub fn point_at_height(&self, x: f64, y: f64, height: f64) -> Option<Point2<f64>> {
         /// Sine of the flattest angle that is used: 60 m away from a height of half a metre.
-        const FLATTEST: f64 = 0.008;
+        const MIN_ANGLE_SINE: f64 = 0.008;
         let ray = self.ray(x, y);
         let above = self.position.z - height;
-        if above <= 0.0 || -ray.z < FLATTEST * ray.norm() {
+        if above <= 0.0 || -ray.z < MIN_ANGLE_SINE * ray.norm() {
             return None;
         }
         let length = above / -ray.z;
@@ -99,9 +99,9 @@ impl Camera {
     /// camera. The pixel may lie outside the image.
     pub fn project(&self, point: &Point3<f64>) -> Option<(f64, f64, f64)> {
         /// Least depth, m.
-        const NEAREST: f64 = 0.02;
+        const MIN_DEPTH: f64 = 0.02;
         let seen = self.rotation.tr_mul(&(point.coords - self.position));
-        (seen.x > NEAREST).then(|| {
+        (seen.x > MIN_DEPTH).then(|| {
             let scale = self.focal / seen.x;
             (self.width as f64 / 2.0 - scale * seen.y, self.height as f64 / 2.0 - scale * seen.z, seen.x)
         })

@@ -4,7 +4,7 @@ use crate::colour::{ColourClass, ColourTable};
 use crate::{Camera, Image};
 
 /// The classes with integral images.
-const SUMMED: [ColourClass; 4] =
+const INTEGRAL_CLASSES: [ColourClass; 4] =
     [ColourClass::Green, ColourClass::White, ColourClass::Dark, ColourClass::Orange];
 
 /// The classes of an image, one for each cell of `step` by `step` pixels.
@@ -72,7 +72,7 @@ impl ClassMap {
             let above = &above[row * width..];
             let mut counts = [0u32; 4];
             for (column, class) in classes.iter().enumerate() {
-                for (count, summed) in counts.iter_mut().zip(SUMMED) {
+                for (count, summed) in counts.iter_mut().zip(INTEGRAL_CLASSES) {
                     *count += u32::from(*class == summed);
                 }
                 for k in 0..4 {

@@ -83,7 +83,7 @@ impl Default for ColourModel {
 }
 
 /// Luma below which relative chroma is not reliable.
-const DARKEST: f32 = 6.0;
+const MIN_LUMA: f32 = 6.0;
 
 /// Least chroma of an object with a colour, on the scale of U and V.
 const LEAST_CHROMA: f32 = 12.0;
@@ -101,7 +101,7 @@ impl ColourModel {
     }
 
     fn class_with(&self, hues: &[Option<AdaptedHue>; 4], [luma, u, v]: [f32; 3]) -> ColourClass {
-        let scale = luma.max(DARKEST);
+        let scale = luma.max(MIN_LUMA);
         let chroma = [(u - 128.0) / scale - self.white[0], (v - 128.0) / scale - self.white[1]];
         if let Some(class) = AdaptedHue::nearest(hues, chroma, scale) {
             return class;
@@ -325,7 +325,7 @@ impl Calibration {
     /// The relative chroma of the carpet, and the number of samples; fills `green_luma`.
     fn carpet(&mut self, image: &Image<'_>, camera: &Camera) -> Option<([f32; 2], f32)> {
         /// Least part of the samples that are carpet.
-        const LEAST: f32 = 0.08;
+        const MIN_CARPET_SHARE: f32 = 0.08;
         self.chroma.fill(0);
         self.green_luma.fill(0);
         let mut samples = 0.0f32;
@@ -352,7 +352,7 @@ impl Calibration {
                     self.green_luma[usize::from(luma)] += 1;
                 }
             });
-            if count < LEAST * samples || count < 20.0 {
+            if count < MIN_CARPET_SHARE * samples || count < 20.0 {
                 return None;
             }
             centre = [sum[0] / count, sum[1] / count];
@@ -384,7 +384,7 @@ fn is_greenish(luma: u8, u: u8, v: u8) -> bool {
 }
 
 pub(crate) fn relative(luma: u8, u: u8, v: u8) -> [f32; 2] {
-    let scale = f32::from(luma).max(DARKEST);
+    let scale = f32::from(luma).max(MIN_LUMA);
     [(f32::from(u) - 128.0) / scale, (f32::from(v) - 128.0) / scale]
 }
 

@@ -7,7 +7,7 @@ use crate::{Calibration, Camera, ColourClass, ColourModel, ColourTable, Error, E
 const MOST_OVERLAP: f32 = 0.1;
 
 /// The fewest pixels with colour in a sample.
-const FEWEST: usize = 12;
+const MIN_PIXELS: usize = 12;
 
 /// A rectangle of pixels of an image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -190,10 +190,10 @@ fn mean_of(models: &[ColourModel]) -> Option<ColourModel> {
 impl ColourSample {
     /// The luma below which a part of the pixels is.
     fn luma(&self, part: f32) -> Result<f32, Error> {
-        if self.pixels.len() < FEWEST {
+        if self.pixels.len() < MIN_PIXELS {
             let (count, name) = (self.pixels.len(), self.class.name());
             return Err(refused(format!(
-                "the sample of `{name}` has {count} pixels; at least {FEWEST} are needed"
+                "the sample of `{name}` has {count} pixels; at least {MIN_PIXELS} are needed"
             )));
         }
         let mut counts = [0u32; 256];
@@ -210,25 +210,26 @@ impl ColourSample {
     /// holds some carpet.
     fn hue(&self, model: &ColourModel) -> Result<(ObjectHue, Vec<[u8; 3]>), Error> {
         /// Least saturation of a colour, and least chroma on the scale of U and V.
-        const LEAST: (f32, f32) = (0.08, 8.0);
+        const MIN_SATURATION_AND_CHROMA: (f32, f32) = (0.08, 8.0);
         /// Greatest difference of angle of one colour, rad.
         const ONE_COLOUR: f32 = 0.35;
         /// The least part of a box that has its colour.
-        const MOSTLY: f32 = 0.6;
+        const MIN_COLOUR_SHARE: f32 = 0.6;
         let name = self.class.name();
         let angle = |pixel: &[u8; 3]| {
             let [u, v] = relative(pixel[0], pixel[1], pixel[2]);
             let (u, v) = (u - model.white[0], v - model.white[1]);
             let saturation = libm::sqrtf(u * u + v * v);
-            let has_colour = saturation > LEAST.0 && saturation * f32::from(pixel[0]) > LEAST.1;
+            let has_colour = saturation > MIN_SATURATION_AND_CHROMA.0
+                && saturation * f32::from(pixel[0]) > MIN_SATURATION_AND_CHROMA.1;
             has_colour.then(|| libm::atan2f(v, u))
         };
         let coloured: Vec<([u8; 3], f32)> =
             self.pixels.iter().filter_map(|pixel| Some((*pixel, angle(pixel)?))).collect();
-        if coloured.len() < FEWEST {
+        if coloured.len() < MIN_PIXELS {
             let count = coloured.len();
             return Err(refused(format!(
-                "the sample of `{name}` has {count} pixels with colour; at least {FEWEST} are needed"
+                "the sample of `{name}` has {count} pixels with colour; at least {MIN_PIXELS} are needed"
             )));
         }
         // The angle around which most others are.
@@ -241,7 +242,7 @@ impl ColourSample {
         let pixels: Vec<[u8; 3]> =
             coloured.iter().filter(|(_, other)| near(middle, *other)).map(|(pixel, _)| *pixel).collect();
         let part = pixels.len() as f32 / self.pixels.len() as f32;
-        if part < MOSTLY {
+        if part < MIN_COLOUR_SHARE {
             let percent = (100.0 * part).round();
             return Err(refused(format!(
                 "the sample of `{name}` is of many colours: {percent} % of its pixels are alike; \

@@ -29,12 +29,12 @@ impl ObjectHue {
     /// The hue in the light in which white has a relative chroma; none if it has no colour there.
     pub(crate) fn adapted(&self, class: ColourClass, white: [f32; 2]) -> Option<AdaptedHue> {
         /// Least saturation of a colour.
-        const LEAST: f32 = 0.08;
+        const MIN_SATURATION: f32 = 0.08;
         let (object, light) = (rgb(self.chroma), rgb(white));
         let chroma = chroma_of([0, 1, 2].map(|i| object[i] * light[i]));
         let (u, v) = (chroma[0] - white[0], chroma[1] - white[1]);
         let saturation = libm::sqrtf(u * u + v * v);
-        (saturation > LEAST).then(|| AdaptedHue {
+        (saturation > MIN_SATURATION).then(|| AdaptedHue {
             class,
             direction: [u / saturation, v / saturation],
             saturation,

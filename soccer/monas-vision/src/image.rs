@@ -3,10 +3,10 @@
 use crate::{Error, ErrorKind};
 
 /// The largest width and height of an image, pixels.
-const LARGEST: usize = 4096;
+const MAX_SIDE: usize = 4096;
 
 /// The smallest width and height of an image, pixels.
-const SMALLEST: usize = 16;
+const MIN_SIDE: usize = 16;
 
 /// An image in YUV 4:2:2 over borrowed bytes: two neighbouring pixels are `Y0 U Y1 V`.
 ///
@@ -68,12 +68,12 @@ impl<'a> Image<'a> {
 
 /// Checks that an image can have this size.
 pub(crate) fn check_size(width: usize, height: usize) -> Result<(), Error> {
-    let is_side = |side: usize| (SMALLEST..=LARGEST).contains(&side);
+    let is_side = |side: usize| (MIN_SIDE..=MAX_SIDE).contains(&side);
     if width.is_multiple_of(2) && is_side(width) && is_side(height) {
         return Ok(());
     }
     let message = format!(
-        "an image of {width} x {height} pixels: the width must be even, and both from {SMALLEST} to {LARGEST}"
+        "an image of {width} x {height} pixels: the width must be even, and both from {MIN_SIDE} to {MAX_SIDE}"
     );
     Err(Error::new(ErrorKind::Size, message))
 }

@@ -5,7 +5,7 @@ use std::net::{IpAddr, SocketAddr};
 use crate::error::{Error, ErrorKind};
 
 /// The name of the cookie with the token.
-const COOKIE: &str = "monas_studio";
+const COOKIE_NAME: &str = "monas_studio";
 
 /// The rules for requests: they name this server, come from its own page, and carry the token if
 /// other computers can connect.
@@ -58,7 +58,7 @@ impl AccessPolicy {
     /// The header that makes the browser remember the token.
     pub(crate) fn cookie(&self) -> Option<String> {
         let token = self.token.as_ref()?;
-        Some(format!("Set-Cookie: {COOKIE}={token}; HttpOnly; SameSite=Strict; Path=/\r\n"))
+        Some(format!("Set-Cookie: {COOKIE_NAME}={token}; HttpOnly; SameSite=Strict; Path=/\r\n"))
     }
 
     /// Checks whether a request may be answered.
@@ -107,7 +107,7 @@ impl AccessPolicy {
 
 fn token_of_cookies(cookies: &str) -> Option<&str> {
     let values = cookies.split(';').filter_map(|cookie| cookie.trim().split_once('='));
-    values.filter(|(name, _)| *name == COOKIE).map(|(_, value)| value).next()
+    values.filter(|(name, _)| *name == COOKIE_NAME).map(|(_, value)| value).next()
 }
 
 /// Compares in a time that does not depend on where two texts differ.

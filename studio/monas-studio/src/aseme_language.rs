@@ -26,7 +26,7 @@ const CHECK_LIMIT: Duration = Duration::from_secs(20);
 const CHECK_STATES: usize = 20_000;
 
 /// The largest number of completion entries.
-const ENTRIES: usize = 1000;
+const MAX_ENTRIES: usize = 1000;
 
 /// The language of models with the messages, functions and activities of a program.
 pub struct AsemeLanguage {
@@ -159,7 +159,7 @@ impl ModelLanguage for AsemeLanguage {
             None => edit::completions(text, at, self.names()),
         };
         let (from, to) = positions.range(word);
-        let entries = entries.into_iter().take(ENTRIES);
+        let entries = entries.into_iter().take(MAX_ENTRIES);
         let entries = entries.map(|it| json!({"text": it.text, "kind": it.kind, "detail": it.detail}));
         json!({"done": true, "from": from, "to": to, "entries": entries.collect::<Vec<_>>()})
     }

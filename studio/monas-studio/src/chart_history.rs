@@ -6,7 +6,7 @@ use monas::records::Chart;
 use prost::Message;
 use yase::{NodeId, Statechart, TransitionId};
 
-use crate::run_view::CHART;
+use crate::run_view::CHART_TOPIC;
 use crate::tape_run::{TapeChart, TapeRun};
 
 /// A step with its position on the tape.
@@ -40,8 +40,9 @@ impl TapeRun {
     pub(crate) fn history(&self, chart: &TapeChart) -> ChartHistory {
         let step = |index: usize| {
             let (entry, channel) = self.entry(index)?;
-            let is_own =
-                channel.topic == CHART && channel.host == chart.host && channel.publisher == chart.agent;
+            let is_own = channel.topic == CHART_TOPIC
+                && channel.host == chart.host
+                && channel.publisher == chart.agent;
             let step = is_own.then(|| Chart::decode(self.bytes(entry)).ok()).flatten()?;
             let recorded = RecordedStep { index, step, is_before: false };
             (recorded.step.chart == chart.chart).then_some(recorded)
@@ -58,7 +59,7 @@ impl TapeRun {
     /// Whether the tape begins after the first step of the agent's charts.
     pub(crate) fn is_cut(&self, chart: &TapeChart) -> bool {
         let sequences = (0..self.len()).filter_map(|index| self.entry(index)).filter(|(_, channel)| {
-            channel.topic == CHART && channel.host == chart.host && channel.publisher == chart.agent
+            channel.topic == CHART_TOPIC && channel.host == chart.host && channel.publisher == chart.agent
         });
         sequences.map(|(entry, _)| entry.sequence).next().is_some_and(|first| first > 1)
     }

@@ -7,7 +7,7 @@ use monas::records::{self, ChartState};
 use serde_json::{Value, json};
 
 /// The number of steps kept for viewers that connect later.
-const STEPS: usize = 64;
+const KEPT_STEPS: usize = 64;
 
 /// The chart of an agent.
 #[derive(Clone, PartialEq, Eq, PartialOrd, Ord, Debug)]
@@ -81,7 +81,7 @@ impl ChartView {
         self.active.extend(&step.entries);
         let mut fired = step.selected.clone();
         fired.extend(&step.taken);
-        if self.steps.len() == STEPS {
+        if self.steps.len() == KEPT_STEPS {
             self.steps.pop_front();
         }
         let step = json!({"t": seconds(time), "number": self.count, "event": event, "fired": fired,
@@ -177,6 +177,6 @@ mod tests {
         let mut view = ChartView::default();
         (0..1000).for_each(|_| view.step(0, &step(&[], &[]), None));
         let key = ChartKey { host: "a".into(), agent: "b".into(), chart: 0 };
-        assert_eq!(view.object(&key, 0)["steps"].as_array().map(Vec::len), Some(STEPS));
+        assert_eq!(view.object(&key, 0)["steps"].as_array().map(Vec::len), Some(KEPT_STEPS));
     }
 }

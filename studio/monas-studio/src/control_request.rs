@@ -5,7 +5,7 @@ use serde::Deserialize;
 use serde_json::{Map, Value};
 
 /// The longest list of settings of a change.
-const SETTINGS: usize = 256;
+const MAX_SETTINGS: usize = 256;
 
 /// A request that changes a run, or queries data for such a request. A page numbers its requests to
 /// match the replies.
@@ -175,8 +175,8 @@ impl AgentAction {
 /// Settings, of which each value is a text.
 fn settings(given: Option<Map<String, Value>>) -> Result<Vec<Setting>, String> {
     let given = given.unwrap_or_default();
-    if given.len() > SETTINGS {
-        return Err(format!("no more than {SETTINGS} settings"));
+    if given.len() > MAX_SETTINGS {
+        return Err(format!("no more than {MAX_SETTINGS} settings"));
     }
     let setting = |(key, value): (String, Value)| match value {
         Value::String(value) => Ok(Setting { key, value }),
@@ -244,7 +244,7 @@ mod tests {
         assert!(change(json!({"action": "step", "number": 7})).contains("number"));
         assert!(change(json!({"action": "move_activity", "activity": "x", "place": -1})).contains("-1"));
         assert!(change(json!({})).contains("action"));
-        let many: Map<String, Value> = (0..=SETTINGS).map(|n| (n.to_string(), "".into())).collect();
+        let many: Map<String, Value> = (0..=MAX_SETTINGS).map(|n| (n.to_string(), "".into())).collect();
         assert!(change(json!({"action": "set", "settings": many})).contains("no more than"));
         let publish = json!({"type": "publish", "id": 1, "host": "a", "topic": "b"});
         assert!(read(publish).unwrap_err().contains("`message`"));

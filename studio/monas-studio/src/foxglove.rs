@@ -31,20 +31,20 @@ pub(crate) const PROTOCOLS: [&str; 2] = ["foxglove.sdk.v1", "foxglove.websocket.
 const MAX_WAIT: Duration = Duration::from_millis(5);
 
 /// The interval between checks for new topics.
-const TOPICS: Duration = Duration::from_secs(1);
+const TOPIC_INTERVAL: Duration = Duration::from_secs(1);
 
 /// The interval between updates of the scene and the states of charts.
-const VIEWS: Duration = Duration::from_nanos(1_000_000_000 / 30);
+const VIEW_INTERVAL: Duration = Duration::from_nanos(1_000_000_000 / 30);
 
 /// The time limit for a client to receive a frame; slower clients are disconnected.
-const SLOWEST: Duration = Duration::from_secs(5);
+const SEND_TIMEOUT: Duration = Duration::from_secs(5);
 
 /// The most messages that are sent between two requests.
-const BATCH: usize = 512;
+const MAX_MESSAGES: usize = 512;
 
 /// The longest request, in bytes, and the most subscriptions of a client.
 const REQUEST_LIMIT: usize = 64 << 10;
-const SUBSCRIPTIONS: usize = 1000;
+const MAX_SUBSCRIPTIONS: usize = 1000;
 
 /// Serves a client until it disconnects, is too slow, or the run or the studio ends.
 pub(crate) fn serve(stream: TcpStream, state: &LiveState, is_over: &AtomicBool) {
@@ -58,7 +58,7 @@ fn exchange(
     is_over: &AtomicBool,
 ) -> Result<(), Box<dyn std::error::Error>> {
     stream.set_nodelay(true)?;
-    stream.set_write_timeout(Some(SLOWEST))?;
+    stream.set_write_timeout(Some(SEND_TIMEOUT))?;
     let limits =
         WebSocketConfig::default().max_message_size(Some(REQUEST_LIMIT)).max_frame_size(Some(REQUEST_LIMIT));
     let mut socket = WebSocket::from_raw_socket(stream, Role::Server, Some(limits));
@@ -77,7 +77,7 @@ fn exchange(
                 let text = json!({"op": "advertise", "channels": news}).to_string();
                 socket.send(Message::text(text))?;
             }
-            due = now() + TOPICS;
+            due = now() + TOPIC_INTERVAL;
         }
         if let Some(request) = next_request(&mut socket, MAX_WAIT)? {
             match channels.handle(&request) {
@@ -93,11 +93,11 @@ fn exchange(
             for frame in channels.view_frames(state) {
                 socket.send(Message::binary(frame))?;
             }
-            views_due = now() + VIEWS;
+            views_due = now() + VIEW_INTERVAL;
         }
         let Some(watch) = &mut watch else { continue };
         let mut patience = MAX_WAIT;
-        for _ in 0..BATCH {
+        for _ in 0..MAX_MESSAGES {
             let Some(seen) = watch.wait(patience)? else { break };
             for frame in channels.frames(&seen, cameras::of(state.scene.as_deref())) {
                 socket.send(Message::binary(frame))?;
@@ -183,8 +183,8 @@ impl Channels {
                     if !is_topic && !self.views.has(channel) && !self.cameras.has(channel) {
                         return Err(format!("there is no channel {channel}"));
                     }
-                    if self.subscriptions.len() >= SUBSCRIPTIONS {
-                        return Err(format!("no more than {SUBSCRIPTIONS} subscriptions"));
+                    if self.subscriptions.len() >= MAX_SUBSCRIPTIONS {
+                        return Err(format!("no more than {MAX_SUBSCRIPTIONS} subscriptions"));
                     }
                     self.subscriptions.insert(id, channel);
                 }

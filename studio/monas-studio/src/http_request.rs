@@ -10,11 +10,11 @@ use crate::access::RequestOrigin;
 const HEAD_LIMIT: usize = 16 << 10;
 
 /// The most headers of a request.
-const HEADERS: usize = 64;
+const MAX_HEADERS: usize = 64;
 
 /// The time limit for a part of the head, and the largest number of parts.
 const TIMEOUT: Duration = Duration::from_secs(2);
-const PARTS: usize = 64;
+const MAX_PARTS: usize = 64;
 
 /// A request without its body: only GET is answered.
 #[derive(Clone, PartialEq, Eq, Default, Debug)]
@@ -33,7 +33,7 @@ impl HttpRequest {
         stream.set_read_timeout(Some(TIMEOUT))?;
         let mut head = Vec::new();
         let mut buffer = [0; 2048];
-        for _ in 0..PARTS {
+        for _ in 0..MAX_PARTS {
             let count = stream.read(&mut buffer)?;
             head.extend(&buffer[..count]);
             if let Some(request) = HttpRequest::parse(&head) {
@@ -48,7 +48,7 @@ impl HttpRequest {
 
     /// Parses a head: `None` while it is incomplete, `Some(None)` if it is wrong.
     fn parse(head: &[u8]) -> Option<Option<HttpRequest>> {
-        let mut headers = [httparse::EMPTY_HEADER; HEADERS];
+        let mut headers = [httparse::EMPTY_HEADER; MAX_HEADERS];
         let mut request = httparse::Request::new(&mut headers);
         match request.parse(head) {
             Ok(httparse::Status::Partial) => return None,

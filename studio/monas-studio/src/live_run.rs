@@ -20,7 +20,7 @@ use crate::live_session::LiveSession;
 use crate::live_state::LiveState;
 use crate::pace::Pace;
 use crate::run_ring::RunRing;
-use crate::run_view::{CHART, LOG, Link, MODEL, ViewedMessage};
+use crate::run_view::{CHART_TOPIC, LOG_TOPIC, Link, MODEL_TOPIC, ViewedMessage};
 use crate::scene::{Scene, SceneEvent};
 use crate::source::{Session, Source};
 use crate::time::now;
@@ -29,16 +29,16 @@ use crate::time::now;
 const CHECK_INTERVAL: Duration = Duration::from_millis(20);
 
 /// The most messages that are taken at once.
-const BATCH: usize = 2048;
+const MAX_MESSAGES: usize = 2048;
 
 /// The interval between updates of agents and topics.
-const TABLES: Duration = Duration::from_secs(1);
+const TABLE_INTERVAL: Duration = Duration::from_secs(1);
 
 /// The interval between updates of the chart values that are being viewed.
-const VALUES: Duration = Duration::from_millis(33);
+const VALUE_INTERVAL: Duration = Duration::from_millis(33);
 
 /// The interval between two attempts to connect.
-const RETRY: Duration = Duration::from_millis(500);
+const RETRY_INTERVAL: Duration = Duration::from_millis(500);
 
 /// A connection to a run, which is renewed when the run is started again.
 pub(crate) struct LiveRun {
@@ -96,7 +96,7 @@ impl LiveState {
             if let Err(error) = self.follow(ended) {
                 self.view().link = Link::Lost(error.to_string());
             }
-            if ended.recv_timeout(RETRY) == Err(RecvTimeoutError::Disconnected) {
+            if ended.recv_timeout(RETRY_INTERVAL) == Err(RecvTimeoutError::Disconnected) {
                 break;
             }
         }
@@ -106,7 +106,7 @@ impl LiveState {
     fn follow(&self, ended: &Receiver<()>) -> Result<(), monas_link::Error> {
         let mut client = ControlClient::connect(&self.socket)?;
         let run = client.describe()?;
-        let mut patterns = vec![CHART, MODEL, LOG];
+        let mut patterns = vec![CHART_TOPIC, MODEL_TOPIC, LOG_TOPIC];
         let of_scene = self.scene.iter().flat_map(|scene| scene.topics().iter().chain(scene.event_topics()));
         patterns.extend(of_scene);
         let mut watch = ControlClient::connect(&self.socket)?.watch_all("", &patterns, true)?;
@@ -128,11 +128,11 @@ impl LiveState {
             lost = self.take(&seen, &mut events, lost);
             if now() >= due {
                 self.look_after(&mut requests, &mut events)?;
-                due = now() + TABLES;
+                due = now() + TABLE_INTERVAL;
             }
             if now() >= values_due {
                 self.look_at_values(&mut requests)?;
-                values_due = now() + VALUES;
+                values_due = now() + VALUE_INTERVAL;
             }
         }
         Ok(())
@@ -171,7 +171,7 @@ impl LiveState {
                 bytes: &seen.payload,
             };
             let is_of_scene = self.is_of_scene(&seen.path);
-            if is_of_scene || [CHART, MODEL, LOG].contains(&seen.path.as_str()) {
+            if is_of_scene || [CHART_TOPIC, MODEL_TOPIC, LOG_TOPIC].contains(&seen.path.as_str()) {
                 view.take(&message, is_of_scene);
                 ring.push(&message, is_of_scene);
             }
@@ -288,7 +288,7 @@ fn next_batch(watch: &mut WatchStream) -> Result<Vec<Seen>, monas_link::Error> {
     let mut patience = CHECK_INTERVAL;
     while let Some(seen) = watch.wait(patience)? {
         batch.push(seen);
-        if batch.len() == BATCH {
+        if batch.len() == MAX_MESSAGES {
             break;
         }
         patience = Duration::ZERO;

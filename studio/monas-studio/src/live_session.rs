@@ -19,13 +19,13 @@ use crate::source::Session;
 use crate::viewer_request::ViewerRequest;
 
 /// The fastest playback of the past.
-const FASTEST: f64 = 1000.0;
+const MAX_SPEED: f64 = 1000.0;
 
 /// A second in nanoseconds: the timeline grows in seconds.
 const SECOND: u64 = 1_000_000_000;
 
 /// The most messages of a watched topic that are skipped for the newest.
-const SKIPPED: usize = 4096;
+const MAX_SKIPPED: usize = 4096;
 
 /// A viewer of a run.
 pub(crate) struct LiveSession {
@@ -100,7 +100,7 @@ impl Session for LiveSession {
             }
             ViewerRequest::Pace(factor) => {
                 if let Some(past) = &mut self.past {
-                    past.factor = factor.min(FASTEST);
+                    past.factor = factor.min(MAX_SPEED);
                     self.ring = None;
                 } else if let Some(pace) = &self.state.pace {
                     pace.set(factor);
@@ -320,7 +320,7 @@ impl LiveSession {
         let (camera, watched) = self.camera.as_mut()?;
         let is_due = camera.is_due(elapsed);
         let mut newest = None;
-        for _ in 0..SKIPPED {
+        for _ in 0..MAX_SKIPPED {
             match watched.stream.wait(Duration::ZERO) {
                 Ok(Some(seen)) => newest = Some(seen),
                 Ok(None) => break,
@@ -340,7 +340,7 @@ impl LiveSession {
     fn sample(&mut self) -> Option<Value> {
         let watched = self.watched.as_mut()?;
         let mut newest = None;
-        for _ in 0..SKIPPED {
+        for _ in 0..MAX_SKIPPED {
             match watched.stream.wait(Duration::ZERO) {
                 Ok(Some(seen)) => {
                     watched.count += 1;

@@ -12,15 +12,15 @@ use yase::{NodeId, ScopeId, Statechart};
 use crate::chart_history::ChartHistory;
 use crate::chart_view::seconds;
 use crate::read_value::ReadMoment;
-use crate::run_view::CYCLE;
+use crate::run_view::CYCLE_TOPIC;
 use crate::tape_run::{TapeChannel, TapeChart, TapeRun};
 
 /// The most messages of a chain.
-const LINKS: usize = 60;
+const MAX_LINKS: usize = 60;
 
 /// The topics of bodies' radios: what is sent and what is received, in their field `words`.
-const SAID: &str = "body/said";
-const HEARD: &str = "body/heard";
+const SAID_TOPIC: &str = "body/said";
+const HEARD_TOPIC: &str = "body/heard";
 
 /// A message that was read, the messages that its publisher had read last before, and so on.
 #[derive(Clone, PartialEq, Debug, Serialize)]
@@ -85,10 +85,10 @@ impl<'a> ChainFinder<'a> {
             let (before, mut end) = self.before(message, publisher.as_ref());
             let own = found.len();
             for one in before {
-                if seen.len() < LINKS && seen.insert(one) {
+                if seen.len() < MAX_LINKS && seen.insert(one) {
                     next.push((one, depth + 1, Some(own)));
                 } else if !seen.contains(&one) {
-                    end = Some(format!("no more than {LINKS} messages are followed"));
+                    end = Some(format!("no more than {MAX_LINKS} messages are followed"));
                 }
             }
             let link = ChainLink {
@@ -118,14 +118,14 @@ impl<'a> ChainFinder<'a> {
     fn before(&mut self, message: usize, publisher: Option<&Publisher<'_>>) -> (Vec<usize>, Option<String>) {
         let Some((_, channel)) = self.tape.entry(message) else { return (Vec::new(), None) };
         let ends = |reason: String| (Vec::new(), Some(reason));
-        if channel.topic == HEARD {
+        if channel.topic == HEARD_TOPIC {
             return match self.said(message) {
                 Some(said) => (vec![said], None),
                 None => ends("no robot of the tape has said these words over the radio before".into()),
             };
         }
         let is_cycle = |other: &TapeChannel| {
-            other.topic == CYCLE && other.host == channel.host && other.publisher == channel.publisher
+            other.topic == CYCLE_TOPIC && other.host == channel.host && other.publisher == channel.publisher
         };
         if !self.tape.channels().iter().any(is_cycle) {
             return ends(format!("`{}` is not an agent: the message comes from outside", channel.publisher));
@@ -232,12 +232,12 @@ impl<'a> ChainFinder<'a> {
     fn said(&self, heard: usize) -> Option<usize> {
         let tape = self.tape;
         let (entry, channel) = tape.entry(heard)?;
-        let words = tape.decoder().decode(HEARD, tape.bytes(entry)).get("words")?.clone();
+        let words = tape.decoder().decode(HEARD_TOPIC, tape.bytes(entry)).get("words")?.clone();
         (0..heard).rev().find(|index| {
             tape.entry(*index).is_some_and(|(said, of)| {
-                of.topic == SAID
+                of.topic == SAID_TOPIC
                     && of.host != channel.host
-                    && tape.decoder().decode(SAID, tape.bytes(said)).get("words") == Some(&words)
+                    && tape.decoder().decode(SAID_TOPIC, tape.bytes(said)).get("words") == Some(&words)
             })
         })
     }
@@ -247,8 +247,9 @@ impl TapeRun {
     fn all_cycles(&self, agent: &TapeChart) -> Vec<(usize, Cycle)> {
         let cycle = |index: usize| {
             let (entry, channel) = self.entry(index)?;
-            let is_own =
-                channel.topic == CYCLE && channel.host == agent.host && channel.publisher == agent.agent;
+            let is_own = channel.topic == CYCLE_TOPIC
+                && channel.host == agent.host
+                && channel.publisher == agent.agent;
             let cycle = is_own.then(|| Cycle::decode(self.bytes(entry)).ok()).flatten()?;
             Some((index, cycle))
         };

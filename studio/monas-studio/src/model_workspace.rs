@@ -9,7 +9,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use serde_json::{Value, json};
 
 /// The extensions of model files in a folder.
-const ENDINGS: [&str; 8] = ["srm", "sag", "suc", "aip", "ft", "eac", "iac", "stct"];
+const EXTENSIONS: [&str; 8] = ["srm", "sag", "suc", "aip", "ft", "eac", "iac", "stct"];
 
 /// The longest file, in bytes: a request has its text with escapes.
 const FILE_LIMIT: u64 = 1 << 19;
@@ -78,7 +78,7 @@ impl ModelWorkspace {
             }
         }
         if files.is_empty() {
-            let message = format!("there is no model to edit; models end in .{}", ENDINGS.join(", ."));
+            let message = format!("there is no model to edit; models end in .{}", EXTENSIONS.join(", ."));
             return Err(io::Error::other(message));
         }
         Ok(ModelWorkspace { files, language, saving: Mutex::default() })
@@ -162,7 +162,7 @@ fn given(paths: &[PathBuf]) -> io::Result<Vec<PathBuf>> {
 
 fn is_model(path: &Path) -> bool {
     let ending = path.extension().and_then(|ending| ending.to_str());
-    path.is_file() && ending.is_some_and(|ending| ENDINGS.contains(&ending))
+    path.is_file() && ending.is_some_and(|ending| EXTENSIONS.contains(&ending))
 }
 
 fn read_text(path: &Path) -> io::Result<String> {

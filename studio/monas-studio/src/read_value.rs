@@ -10,7 +10,7 @@ use yase::{NodeId, ScopeId, Statechart};
 
 use crate::chart_history::RecordedStep;
 use crate::chart_view::seconds;
-use crate::run_view::CYCLE;
+use crate::run_view::CYCLE_TOPIC;
 use crate::tape_run::{TapeChart, TapeRun};
 
 /// A field, a constant or a timer in a condition.
@@ -147,7 +147,7 @@ impl TapeRun {
         let TapeChart { host, agent, .. } = moment.chart;
         let is_cycle = move |index: &usize| {
             self.entry(*index).is_some_and(|(_, channel)| {
-                channel.topic == CYCLE && channel.host == *host && channel.publisher == *agent
+                channel.topic == CYCLE_TOPIC && channel.host == *host && channel.publisher == *agent
             })
         };
         // If the tape is held between a step and the cycle that it belongs to, this cycle counts.

@@ -11,7 +11,7 @@ use crate::live_state::LiveState;
 use crate::message_decoder::message_json;
 
 /// The longest chain of messages within messages that a form shows.
-const DEPTH: usize = 4;
+const MAX_DEPTH: usize = 4;
 
 /// Executes a request of a viewer. Returns the reply without its number: success or the reason of
 /// failure, and the results.
@@ -78,7 +78,7 @@ fn field_object(field: &FieldDescriptor) -> Value {
     let (kind, values, default) = match field.kind() {
         _ if field.is_list() => ("json", None, json!([])),
         _ if field.is_map() => ("json", None, json!({})),
-        Kind::Message(message) => ("json", None, default_message(&message, DEPTH)),
+        Kind::Message(message) => ("json", None, default_message(&message, MAX_DEPTH)),
         Kind::Enum(kind) => ("enum", Some(value_names(&kind)), json!(kind.default_value().name())),
         Kind::Bool => ("boolean", None, json!(false)),
         Kind::String | Kind::Bytes => ("text", None, json!("")),

@@ -7,21 +7,21 @@ use prost::Message;
 use serde_json::{Value, json};
 
 use crate::chart_view::{ChartKey, seconds};
-use crate::run_view::{CHART, RunView, ViewedMessage};
+use crate::run_view::{CHART_TOPIC, RunView, ViewedMessage};
 use crate::scene::SceneEvent;
 
 /// The most bytes of messages and tables that are kept, and the overhead of a message besides its
 /// content.
-const BYTES: usize = 64 << 20;
+const MAX_BYTES: usize = 64 << 20;
 const OVERHEAD: usize = 64;
 
 /// The messages and the run's time between two kept moments.
-const INTERVAL: u64 = 10_000;
-const SPAN: u64 = 10_000_000_000;
+const MOMENT_MESSAGES: u64 = 10_000;
+const MOMENT_TIME: u64 = 10_000_000_000;
 
 /// The most moments and events that are kept.
-const MOMENTS: usize = 64;
-const EVENTS: usize = 2000;
+const MAX_MOMENTS: usize = 64;
+const MAX_EVENTS: usize = 2000;
 
 /// A kept message, by the number of its channel.
 #[derive(Clone, Debug)]
@@ -120,11 +120,12 @@ impl RunRing {
     /// the limits.
     pub(crate) fn keep(&mut self, view: &RunView) {
         let Some(KeptMoment { number, view: last, .. }) = self.moments.back() else { return };
-        let is_old = self.end() - number >= INTERVAL || view.now.saturating_sub(last.now) >= SPAN;
+        let is_old =
+            self.end() - number >= MOMENT_MESSAGES || view.now.saturating_sub(last.now) >= MOMENT_TIME;
         if is_old && self.end() > *number {
             self.keep_moment(view);
         }
-        while (self.bytes > BYTES || self.moments.len() > MOMENTS) && self.moments.len() > 1 {
+        while (self.bytes > MAX_BYTES || self.moments.len() > MAX_MOMENTS) && self.moments.len() > 1 {
             self.bytes -= self.moments.pop_front().map_or(0, |moment| moment.tables.len());
             let next = self.moments.front().map_or(0, |moment| moment.number);
             while self.first < next
@@ -144,7 +145,7 @@ impl RunRing {
 
     /// Notes an event at a time in nanoseconds.
     pub(crate) fn note(&mut self, time: u64, event: &SceneEvent) {
-        if self.events.len() == EVENTS {
+        if self.events.len() == MAX_EVENTS {
             self.events.pop_front();
         }
         self.events.push_back(json!({"t": seconds(time), "kind": event.kind, "text": event.text}));
@@ -208,7 +209,7 @@ impl RunRing {
     ) -> Option<(u64, u64)> {
         let find = |number: u64| {
             let (message, channel) = self.message(number)?;
-            if channel.topic != CHART {
+            if channel.topic != CHART_TOPIC {
                 return None;
             }
             let step = Chart::decode(&*message.bytes).ok().filter(&is_wanted)?;
@@ -243,7 +244,7 @@ mod tests {
             ring.keep(&view);
         }
         // The messages up to the next moment, and its tables.
-        assert!(ring.bytes <= BYTES + 12 * (bytes.len() + OVERHEAD), "{}", ring.bytes);
+        assert!(ring.bytes <= MAX_BYTES + 12 * (bytes.len() + OVERHEAD), "{}", ring.bytes);
         let kept: usize = ring.messages.iter().map(|message| message.bytes.len() + OVERHEAD).sum();
         let tables: usize = ring.moments.iter().map(|moment| moment.tables.len()).sum();
         assert!(tables > 4 << 20 && ring.bytes == kept + tables, "{} {kept} {tables}", ring.bytes);
@@ -262,7 +263,7 @@ mod tests {
         let step = |selected: u32| Chart { selected: vec![selected], ..Chart::default() }.encode_to_vec();
         for (time, selected) in [(1, 5), (2, 6), (3, 5)] {
             let bytes = step(selected);
-            ring.push(&ViewedMessage { topic: CHART, ..message(time, &bytes) }, false);
+            ring.push(&ViewedMessage { topic: CHART_TOPIC, ..message(time, &bytes) }, false);
         }
         let of = |number, is_back, segment: u32| {
             ring.step_from(number, "a/p/0", is_back, |step| step.selected.contains(&segment))

@@ -13,13 +13,13 @@ use crate::message_decoder::MessageDecoder;
 use crate::scene::{Scene, ScenePicture};
 
 /// The number of log lines that are kept.
-const LINES: usize = 500;
+const KEPT_LINES: usize = 500;
 
 /// The topics of records.
-pub(crate) const CHART: &str = "monas/chart";
-pub(crate) const CYCLE: &str = "monas/cycle";
-pub(crate) const MODEL: &str = "monas/model";
-pub(crate) const LOG: &str = "monas/log";
+pub(crate) const CHART_TOPIC: &str = "monas/chart";
+pub(crate) const CYCLE_TOPIC: &str = "monas/cycle";
+pub(crate) const MODEL_TOPIC: &str = "monas/model";
+pub(crate) const LOG_TOPIC: &str = "monas/log";
 
 /// A message, from a run or a tape.
 #[derive(Clone, Copy, Debug)]
@@ -105,8 +105,8 @@ impl RunView {
     /// Applies a message of a watched topic.
     pub(crate) fn take(&mut self, message: &ViewedMessage<'_>, is_of_scene: bool) {
         match message.topic {
-            CHART => self.take_step(message),
-            MODEL => {
+            CHART_TOPIC => self.take_step(message),
+            MODEL_TOPIC => {
                 if let Ok(model) = Model::decode(message.bytes) {
                     let key = key(message, model.chart);
                     // The chart may have been replaced: its shapes are requested again.
@@ -116,7 +116,7 @@ impl RunView {
                     self.events.insert(key, model.events);
                 }
             }
-            LOG => self.take_line(message),
+            LOG_TOPIC => self.take_line(message),
             _ => {}
         }
         if is_of_scene {
@@ -138,7 +138,7 @@ impl RunView {
 
     fn take_line(&mut self, message: &ViewedMessage<'_>) {
         let Ok(log) = Log::decode(message.bytes) else { return };
-        if self.lines.len() == LINES {
+        if self.lines.len() == KEPT_LINES {
             self.lines.pop_front();
         }
         let level = log.level().as_str_name().to_lowercase();

@@ -20,21 +20,21 @@ use messages::{
 };
 
 /// The frame of the plane.
-const FRAME: &str = "world";
+const FRAME_ID: &str = "world";
 
 /// The shape of a body: it stands for any robot. Metres.
 const BODY_RADIUS: f64 = 0.15;
 const BODY_HEIGHT: f64 = 0.5;
-const TEXT: f64 = 0.25;
+const TEXT_SIZE: f64 = 0.25;
 
 /// The thickness of lines on the ground, m, and how many parts a circle has.
-const LINE: f64 = 0.05;
-const PARTS: u32 = 48;
+const LINE_WIDTH: f64 = 0.05;
+const CIRCLE_PARTS: u32 = 48;
 
 /// Colours of the two groups as on the page, and others.
-const GROUPS: [Color; 2] = [colour(0.0, 0.447, 0.698), colour(0.835, 0.369, 0.0)];
+const GROUP_COLOURS: [Color; 2] = [colour(0.0, 0.447, 0.698), colour(0.835, 0.369, 0.0)];
 const WHITE: Color = colour(1.0, 1.0, 1.0);
-const OBJECT: Color = colour(0.902, 0.624, 0.0);
+const OBJECT_COLOUR: Color = colour(0.902, 0.624, 0.0);
 
 const fn colour(r: f64, g: f64, b: f64) -> Color {
     Color { r, g, b, a: 1.0 }
@@ -69,7 +69,7 @@ impl SceneHistory {
             entities.push(ground(&picture.ground));
         }
         for entity in &mut entities {
-            (entity.timestamp, entity.frame_id) = (timestamp, FRAME.to_owned());
+            (entity.timestamp, entity.frame_id) = (timestamp, FRAME_ID.to_owned());
         }
         SceneUpdate { deletions, entities }
     }
@@ -94,7 +94,7 @@ fn pose(x: f64, y: f64, z: f64, heading: f64) -> Option<Pose> {
 }
 
 fn group_colour(group: usize, opacity: f64) -> Option<Color> {
-    GROUPS.get(group).or(GROUPS.first()).map(|colour| Color { a: opacity, ..*colour })
+    GROUP_COLOURS.get(group).or(GROUP_COLOURS.first()).map(|colour| Color { a: opacity, ..*colour })
 }
 
 fn body(body: &Body) -> SceneEntity {
@@ -118,9 +118,9 @@ fn body(body: &Body) -> SceneEntity {
         color,
     };
     let text = TextPrimitive {
-        pose: pose(body.x, body.y, height + TEXT, 0.0),
+        pose: pose(body.x, body.y, height + TEXT_SIZE, 0.0),
         billboard: true,
-        font_size: TEXT,
+        font_size: TEXT_SIZE,
         scale_invariant: false,
         color: Some(WHITE),
         text: body.label.clone(),
@@ -133,7 +133,7 @@ fn thing(place: usize, object: &SceneObject) -> SceneEntity {
     let sphere = SpherePrimitive {
         pose: pose(object.x, object.y, object.radius, 0.0),
         size: vector(size, size, size),
-        color: Some(OBJECT),
+        color: Some(OBJECT_COLOUR),
     };
     SceneEntity { spheres: vec![sphere], ..entity(format!("{} {place}", object.kind)) }
 }
@@ -144,13 +144,13 @@ fn belief(belief: &Belief, bodies: &[Body]) -> SceneEntity {
     let color = group_colour(group, 0.35 + 0.65 * belief.confidence.clamp(0.0, 1.0));
     let radius = if belief.heading.is_some() { BODY_RADIUS } else { 0.08 };
     let mut lines =
-        vec![LinePrimitive { color, thickness: LINE / 2.0, ..circle(belief.x, belief.y, radius) }];
+        vec![LinePrimitive { color, thickness: LINE_WIDTH / 2.0, ..circle(belief.x, belief.y, radius) }];
     if let Some(heading) = belief.heading {
         let points = vec![point(0.0, 0.0), point(2.0 * radius, 0.0)];
         lines.push(LinePrimitive {
             r#type: line_primitive::Type::LineStrip.into(),
             pose: pose(belief.x, belief.y, 0.01, heading),
-            thickness: LINE / 2.0,
+            thickness: LINE_WIDTH / 2.0,
             points,
             color,
             ..LinePrimitive::default()
@@ -171,7 +171,7 @@ fn seen_lines(picture: &ScenePicture) -> impl Iterator<Item = SceneEntity> {
         let lines = vec![LinePrimitive {
             r#type: line_primitive::Type::LineList.into(),
             pose: pose(0.0, 0.0, 0.01, 0.0),
-            thickness: LINE / 2.0,
+            thickness: LINE_WIDTH / 2.0,
             points,
             color: group_colour(group, 1.0),
             ..LinePrimitive::default()
@@ -186,14 +186,14 @@ fn point(x: f64, y: f64) -> Point3 {
 
 fn circle(x: f64, y: f64, radius: f64) -> LinePrimitive {
     let part = |part: u32| {
-        let angle = 2.0 * PI * f64::from(part) / f64::from(PARTS);
+        let angle = 2.0 * PI * f64::from(part) / f64::from(CIRCLE_PARTS);
         point(radius * libm::cos(angle), radius * libm::sin(angle))
     };
     LinePrimitive {
         r#type: line_primitive::Type::LineLoop.into(),
         pose: pose(x, y, 0.01, 0.0),
-        thickness: LINE,
-        points: (0..PARTS).map(part).collect(),
+        thickness: LINE_WIDTH,
+        points: (0..CIRCLE_PARTS).map(part).collect(),
         color: Some(WHITE),
         ..LinePrimitive::default()
     }
@@ -204,7 +204,7 @@ fn ground(ground: &Ground) -> SceneEntity {
         GroundMark::Rectangle { x, y, width, height, group } => LinePrimitive {
             r#type: line_primitive::Type::LineLoop.into(),
             pose: pose(x, y, 0.0, 0.0),
-            thickness: LINE,
+            thickness: LINE_WIDTH,
             points: vec![point(0.0, 0.0), point(width, 0.0), point(width, height), point(0.0, height)],
             color: group.map_or(Some(WHITE), |group| group_colour(group, 1.0)),
             ..LinePrimitive::default()
@@ -212,7 +212,7 @@ fn ground(ground: &Ground) -> SceneEntity {
         GroundMark::Line { ends: [x0, y0, x1, y1] } => LinePrimitive {
             r#type: line_primitive::Type::LineStrip.into(),
             pose: pose(0.0, 0.0, 0.0, 0.0),
-            thickness: LINE,
+            thickness: LINE_WIDTH,
             points: vec![point(x0, y0), point(x1, y1)],
             color: Some(WHITE),
             ..LinePrimitive::default()

@@ -31,8 +31,8 @@ use crate::tape_run::TapeRun;
 use crate::viewer;
 
 /// The first port to try, and the number of ports after it.
-const PORT: u16 = 4810;
-const PORTS: u16 = 20;
+const FIRST_PORT: u16 = 4810;
+const PORT_COUNT: u16 = 20;
 
 /// The most connections at a time: pages and their files.
 const CONNECTION_LIMIT: usize = 32;
@@ -41,10 +41,10 @@ const CONNECTION_LIMIT: usize = 32;
 const VIEWER_LIMIT: usize = 8;
 
 /// The time limit for sending a file.
-const SLOWEST: Duration = Duration::from_secs(5);
+const SEND_TIMEOUT: Duration = Duration::from_secs(5);
 
 /// Headers of every reply: nothing is stored, framed, or fetched from elsewhere.
-const HEADERS: &str = "Cache-Control: no-store\r\nX-Content-Type-Options: nosniff\r\nReferrer-Policy: no-referrer\r\n\
+const REPLY_HEADERS: &str = "Cache-Control: no-store\r\nX-Content-Type-Options: nosniff\r\nReferrer-Policy: no-referrer\r\n\
      X-Frame-Options: DENY\r\nCross-Origin-Resource-Policy: same-origin\r\nCross-Origin-Opener-Policy: same-origin\r\n\
      Content-Security-Policy: default-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data:; \
      frame-ancestors 'none'; base-uri 'none'; form-action 'none'\r\nConnection: close\r\n";
@@ -177,7 +177,7 @@ impl Drop for Studio {
             ip if ip.is_unspecified() => IpAddr::V4(Ipv4Addr::LOCALHOST),
             ip => ip,
         };
-        let _ = TcpStream::connect_timeout(&SocketAddr::new(ip, self.address.port()), SLOWEST);
+        let _ = TcpStream::connect_timeout(&SocketAddr::new(ip, self.address.port()), SEND_TIMEOUT);
         let _ = self.thread.take().map(JoinHandle::join);
     }
 }
@@ -190,7 +190,7 @@ impl std::fmt::Debug for Studio {
 
 /// A listener on the first free port of loopback.
 fn first_free() -> Result<TcpListener, Error> {
-    let ports = (PORT..PORT + PORTS).chain([0]);
+    let ports = (FIRST_PORT..FIRST_PORT + PORT_COUNT).chain([0]);
     let mut listeners = ports.map(|port| TcpListener::bind((Ipv4Addr::LOCALHOST, port)));
     listeners
         .find_map(Result::ok)
@@ -245,7 +245,7 @@ impl Drop for Slot {
 impl ServerState {
     /// Answers the only request of a connection.
     fn handle(self: &Arc<ServerState>, mut stream: TcpStream) -> io::Result<()> {
-        stream.set_write_timeout(Some(SLOWEST))?;
+        stream.set_write_timeout(Some(SEND_TIMEOUT))?;
         let Some(request) = HttpRequest::read(&mut stream)? else {
             return reply(&mut stream, "400 Bad Request", "text/plain", b"not an HTTP request\n", "");
         };
@@ -344,7 +344,7 @@ impl ServerState {
 fn reply(stream: &mut TcpStream, status: &str, media_type: &str, body: &[u8], more: &str) -> io::Result<()> {
     let length = body.len();
     let head = format!(
-        "HTTP/1.1 {status}\r\nContent-Type: {media_type}\r\nContent-Length: {length}\r\n{HEADERS}{more}\r\n"
+        "HTTP/1.1 {status}\r\nContent-Type: {media_type}\r\nContent-Length: {length}\r\n{REPLY_HEADERS}{more}\r\n"
     );
     stream.write_all(head.as_bytes())?;
     stream.write_all(body)?;

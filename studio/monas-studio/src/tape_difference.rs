@@ -6,12 +6,12 @@ use serde::Serialize;
 use serde_json::Value;
 
 use crate::chart_view::seconds;
-use crate::run_view::CYCLE;
+use crate::run_view::CYCLE_TOPIC;
 use crate::scene::Banner;
 use crate::tape_run::{TapeChannel, TapeRun};
 
 /// The topics with this prefix are the runtime's records about itself.
-const RECORDS: &str = "monas/";
+const RECORD_PREFIX: &str = "monas/";
 
 /// The earliest message that two tapes do not share.
 #[derive(Clone, PartialEq, Debug, Serialize)]
@@ -119,7 +119,7 @@ impl TapeRun {
         let key = |index: usize| {
             let (entry, channel) = self.entry(index)?;
             let key = (&*channel.host, &*channel.publisher, &*channel.topic, entry.sequence);
-            (!channel.topic.starts_with(RECORDS)).then_some((key, index))
+            (!channel.topic.starts_with(RECORD_PREFIX)).then_some((key, index))
         };
         (0..self.len()).filter_map(key).collect()
     }
@@ -150,7 +150,7 @@ impl TapeRun {
     /// Whether a host has an agent of this name.
     pub fn has_agent(&self, host: &str, agent: &str) -> bool {
         let is_own = |channel: &TapeChannel| {
-            channel.topic == CYCLE && channel.host == host && channel.publisher == agent
+            channel.topic == CYCLE_TOPIC && channel.host == host && channel.publisher == agent
         };
         self.channels().iter().any(is_own)
     }

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use serde_json::{Value, json};
 
 use crate::chart_view::seconds;
-use crate::run_view::{CHART, CYCLE, RunView, ViewedMessage};
+use crate::run_view::{CHART_TOPIC, CYCLE_TOPIC, RunView, ViewedMessage};
 use crate::tape_run::{TapeChannel, TapeRun};
 
 /// The state of a run after some of the messages of its tape.
@@ -70,7 +70,7 @@ impl TapeMoment {
             let row = TopicRow { count, last, channel };
             let key = (channel.host.as_str(), channel.topic.as_str());
             topics.entry(key).and_modify(|known| known.add(&row)).or_insert(row);
-            if channel.topic == CYCLE && known_agents.insert((&channel.host, &channel.publisher)) {
+            if channel.topic == CYCLE_TOPIC && known_agents.insert((&channel.host, &channel.publisher)) {
                 agents.push(self.agent(tape, &channel.host, &channel.publisher));
             }
         }
@@ -87,8 +87,8 @@ impl TapeMoment {
             });
             of_agent.map(|(_, (count, _))| count).sum()
         };
-        json!({"host": host, "name": name, "state": "recorded", "reason": "", "frequency": 0.0, "cycles": count(CYCLE),
-            "overruns": 0, "missed": 0, "steps": count(CHART), "time": null, "charts": [], "activities": []})
+        json!({"host": host, "name": name, "state": "recorded", "reason": "", "frequency": 0.0, "cycles": count(CYCLE_TOPIC),
+            "overruns": 0, "missed": 0, "steps": count(CHART_TOPIC), "time": null, "charts": [], "activities": []})
     }
 }
 

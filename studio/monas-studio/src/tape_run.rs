@@ -11,14 +11,14 @@ use yase::Statechart;
 use crate::chart_view::{ChartKey, seconds};
 use crate::error::{Error, ErrorKind};
 use crate::message_decoder::MessageDecoder;
-use crate::run_view::{CHART, LOG, Link, MODEL, RunView};
+use crate::run_view::{CHART_TOPIC, LOG_TOPIC, Link, MODEL_TOPIC, RunView};
 use crate::scene::{Scene, SceneEvent};
 use crate::source::{Session, Source};
 use crate::tape_moment::TapeMoment;
 use crate::tape_session::TapeSession;
 
 /// The number of messages between two moments that are kept.
-const INTERVAL: usize = 20_000;
+const MOMENT_MESSAGES: usize = 20_000;
 
 /// A chart of a recorded run.
 #[derive(Clone, PartialEq, Debug)]
@@ -73,7 +73,7 @@ struct TapeIndex {
     decoder: MessageDecoder,
     /// Events on the timeline.
     events: Vec<Value>,
-    /// After each [`INTERVAL`] messages.
+    /// After each [`MOMENT_MESSAGES`] messages.
     moments: Vec<TapeMoment>,
 }
 
@@ -152,8 +152,8 @@ impl TapeRun {
     fn moments(&self, first: TapeMoment) -> Vec<TapeMoment> {
         let mut moments = vec![first.clone()];
         let mut moment = first;
-        while moment.count + INTERVAL < self.len() {
-            moment.advance(self, moment.count + INTERVAL);
+        while moment.count + MOMENT_MESSAGES < self.len() {
+            moment.advance(self, moment.count + MOMENT_MESSAGES);
             moments.push(moment.clone());
         }
         moments
@@ -259,7 +259,8 @@ impl TapeRun {
     pub(crate) fn step_from(&self, count: usize, key: &str, is_back: bool) -> Option<usize> {
         let is_step = |index: &usize| {
             self.entry(*index).is_some_and(|(entry, channel)| {
-                channel.topic == CHART && key_of(channel, self.bytes(entry)).is_some_and(|known| known == key)
+                channel.topic == CHART_TOPIC
+                    && key_of(channel, self.bytes(entry)).is_some_and(|known| known == key)
             })
         };
         match is_back {
@@ -285,7 +286,7 @@ impl TapeIndex {
     fn add_channel(&mut self, channel: &monas_tape::Channel) -> u32 {
         let scene = self.scene.as_deref();
         let is_of_scene = scene.is_some_and(|scene| scene.topics().contains(&channel.topic.as_str()));
-        let is_record = [CHART, MODEL, LOG].contains(&channel.topic.as_str());
+        let is_record = [CHART_TOPIC, MODEL_TOPIC, LOG_TOPIC].contains(&channel.topic.as_str());
         if !self.decoder.knows(&channel.topic) {
             self.decoder.learn(&channel.topic, &channel.schema.name, &channel.schema.data);
         }

@@ -14,13 +14,13 @@ use crate::tape_run::TapeRun;
 use crate::viewer_request::ViewerRequest;
 
 /// The fastest playback.
-const FASTEST: f64 = 1000.0;
+const MAX_SPEED: f64 = 1000.0;
 
 /// The interval of updates of the tables, nanoseconds on the tape.
-const TABLES: u64 = 500_000_000;
+const TABLE_INTERVAL: u64 = 500_000_000;
 
 /// The interval of updates of the values of a chart during playback, nanoseconds on the tape.
-const VALUES: u64 = 200_000_000;
+const VALUE_INTERVAL: u64 = 200_000_000;
 
 /// The view of one viewer, which plays and seeks for itself.
 pub(crate) struct TapeSession {
@@ -175,7 +175,7 @@ impl TapeSession {
         let key = self.values.as_ref()?;
         let (count, now) = (self.moment.count, self.moment.view.now);
         let is_due = self.sent_values.is_none_or(|(sent, at)| {
-            (sent, at) != (count, now) && (self.factor == 0.0 || now.abs_diff(at) >= VALUES)
+            (sent, at) != (count, now) && (self.factor == 0.0 || now.abs_diff(at) >= VALUE_INTERVAL)
         });
         let chart = self.tape.charts().iter().find(|chart| chart.key().text() == *key)?;
         let active = self.moment.view.charts.get(&chart.key()).filter(|_| is_due)?.active();
@@ -222,7 +222,7 @@ impl Session for TapeSession {
                 if factor > 0.0 && self.moment.view.now >= self.tape.end() {
                     self.go_to(0, self.tape.begin());
                 }
-                self.factor = factor.min(FASTEST);
+                self.factor = factor.min(MAX_SPEED);
                 self.is_new = true;
             }
             ViewerRequest::Seek(time) => {
@@ -255,7 +255,7 @@ impl Session for TapeSession {
     fn frame(&mut self, elapsed: Duration) -> Option<Value> {
         self.play(elapsed);
         let now = self.moment.view.now;
-        if self.is_elsewhere || self.tables.is_none_or(|tables| now.abs_diff(tables) >= TABLES) {
+        if self.is_elsewhere || self.tables.is_none_or(|tables| now.abs_diff(tables) >= TABLE_INTERVAL) {
             self.moment.set_tables(&self.tape);
             self.tables = Some(now);
         }

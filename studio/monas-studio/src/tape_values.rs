@@ -12,7 +12,7 @@ use crate::read_value::ReadMoment;
 use crate::tape_run::{TapeChart, TapeRun};
 
 /// The number of cycles of an agent before a moment whose deliveries are searched.
-const CYCLES: usize = 1000;
+const SEARCHED_CYCLES: usize = 1000;
 
 impl TapeRun {
     /// The values of a chart after `count` messages, as a run sends those of the present moment;
@@ -57,7 +57,7 @@ impl TapeRun {
             .map(|channel| (topic_hash(&channel.topic), channel.topic.as_str()))
             .collect();
         let mut newest: BTreeMap<(u32, u64, String, String), Delivery> = BTreeMap::new();
-        for delivery in self.cycles(moment).take(CYCLES).flat_map(|cycle| cycle.delivered) {
+        for delivery in self.cycles(moment).take(SEARCHED_CYCLES).flat_map(|cycle| cycle.delivered) {
             let Delivery { region, topic, host, publisher, .. } = delivery.clone();
             newest.entry((region, topic, host, publisher)).or_insert(delivery);
         }

@@ -12,7 +12,7 @@ use crate::chart_view::seconds;
 use crate::guard_atom::GuardAtom;
 use crate::message_chain::{ChainFinder, MessageChain};
 use crate::read_value::ReadMoment;
-use crate::run_view::MODEL;
+use crate::run_view::MODEL_TOPIC;
 use crate::tape_run::{TapeChart, TapeRun};
 
 /// A question about a transition.
@@ -233,8 +233,9 @@ impl TapeRun {
     fn events_of(&self, chart: &TapeChart) -> Vec<String> {
         let models = (0..self.len()).rev().find_map(|index| {
             let (entry, channel) = self.entry(index)?;
-            let is_own =
-                channel.topic == MODEL && channel.host == chart.host && channel.publisher == chart.agent;
+            let is_own = channel.topic == MODEL_TOPIC
+                && channel.host == chart.host
+                && channel.publisher == chart.agent;
             let model = is_own.then(|| Model::decode(self.bytes(entry)).ok()).flatten()?;
             (model.chart == chart.chart).then_some(model.events)
         });

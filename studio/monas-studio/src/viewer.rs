@@ -16,10 +16,10 @@ use crate::time::now;
 use crate::viewer_request::ViewerRequest;
 
 /// The interval between two frames.
-const FRAME: Duration = Duration::from_nanos(1_000_000_000 / 30);
+const FRAME_INTERVAL: Duration = Duration::from_nanos(1_000_000_000 / 30);
 
 /// The time limit for a page to receive a frame; slower pages are disconnected.
-const SLOWEST: Duration = Duration::from_secs(5);
+const SEND_TIMEOUT: Duration = Duration::from_secs(5);
 
 /// The wait for the page's reply to the end of the studio: a page on a busy computer may be slow,
 /// and a frozen page must not delay the end of a run any longer.
@@ -30,7 +30,7 @@ const REQUEST_LIMIT: usize = 16 << 10;
 const CONTROL_LIMIT: usize = 1 << 20;
 
 /// The most requests that are handled between two frames.
-const REQUESTS: usize = 32;
+const MAX_REQUESTS: usize = 32;
 
 /// The longest request of a page that may send texts, or not, in bytes.
 pub(crate) fn request_limit(sends_texts: bool) -> usize {
@@ -58,7 +58,7 @@ fn exchange(
     is_over: &AtomicBool,
 ) -> tungstenite::Result<()> {
     stream.set_nodelay(true)?;
-    stream.set_write_timeout(Some(SLOWEST))?;
+    stream.set_write_timeout(Some(SEND_TIMEOUT))?;
     let limits = WebSocketConfig::default().max_message_size(Some(limit)).max_frame_size(Some(limit));
     let mut socket = WebSocket::from_raw_socket(stream, Role::Server, Some(limits));
     if let Some(models) = &models {
@@ -67,7 +67,7 @@ fn exchange(
     let mut last = now();
     let mut due = last;
     while !is_over.load(Ordering::SeqCst) {
-        for _ in 0..REQUESTS {
+        for _ in 0..MAX_REQUESTS {
             let left = due.saturating_duration_since(now());
             let Some(request) = next_request(&mut socket, left)? else { break };
             let reply = match (ViewerRequest::parse(&request), &mut models) {
@@ -91,7 +91,7 @@ fn exchange(
             send(&mut socket, &reply)?;
         }
         let frame = session.frame(time - last);
-        (last, due) = (time, time + FRAME);
+        (last, due) = (time, time + FRAME_INTERVAL);
         if let Some(frame) = frame {
             send(&mut socket, &frame)?;
         }
@@ -103,7 +103,7 @@ fn exchange(
 /// handshake.
 pub(crate) fn refuse(stream: TcpStream, reason: &str) {
     let refuse = || {
-        stream.set_write_timeout(Some(SLOWEST))?;
+        stream.set_write_timeout(Some(SEND_TIMEOUT))?;
         let limits = WebSocketConfig::default()
             .max_message_size(Some(REQUEST_LIMIT))
             .max_frame_size(Some(REQUEST_LIMIT));

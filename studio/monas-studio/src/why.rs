@@ -12,7 +12,7 @@ use yase::{NodeId, ScopeId, Statechart, TransitionId};
 use crate::chart_history::RecordedStep;
 use crate::chart_view::{ChartKey, seconds};
 use crate::read_value::{ReadMoment, ReadValue};
-use crate::run_view::MODEL;
+use crate::run_view::MODEL_TOPIC;
 use crate::tape_run::{TapeChart, TapeRun};
 use crate::transition_explanation::is_connector;
 
@@ -105,8 +105,9 @@ impl TapeRun {
     pub(crate) fn check_unreplaced(&self, chart: &TapeChart, count: usize) -> Result<(), String> {
         let mut first = None;
         for (entry, channel) in (0..count).filter_map(|index| self.entry(index)) {
-            let is_own =
-                channel.topic == MODEL && channel.host == chart.host && channel.publisher == chart.agent;
+            let is_own = channel.topic == MODEL_TOPIC
+                && channel.host == chart.host
+                && channel.publisher == chart.agent;
             let model = is_own.then(|| Model::decode(self.bytes(entry)).ok()).flatten();
             let Some(model) = model.filter(|model| model.chart == chart.chart) else { continue };
             let first = first.get_or_insert_with(|| model.clone());

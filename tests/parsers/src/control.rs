@@ -1,7 +1,7 @@
 //! Data from sockets: requests of tools, replies of runs, and datagrams of local links. Each is
 //! read or rejected; a value that was read is equal after writing and reading it again.
 
-use monas_link::fuzzed::{self, LIMIT};
+use monas_link::fuzzed::{self, MAX_MESSAGE_SIZE};
 
 /// Checks the documented guarantees for one input.
 pub fn control(bytes: &[u8]) {
@@ -17,7 +17,7 @@ pub fn control(bytes: &[u8]) {
 fn again(bytes: &[u8], read: fn(&[u8]) -> (usize, Vec<u8>)) {
     let (count, written) = read(bytes);
     assert!(count <= bytes.len() / 4, "{count} messages in {} bytes", bytes.len());
-    assert!(written.len() <= LIMIT * count.max(1));
+    assert!(written.len() <= MAX_MESSAGE_SIZE * count.max(1));
     assert_eq!(read(&written), (count, written.clone()), "what was written reads as something else");
 }
 

@@ -7,7 +7,7 @@ use yase::{Source, TypeEnvironment};
 use crate::{assert_findings_fit, text_of};
 
 /// Charts with more nodes than this are not drawn, to save time.
-const DRAWN: usize = 2000;
+const MAX_DRAWN_NODES: usize = 2000;
 
 /// Checks the documented guarantees for one input.
 pub fn role(data: &[u8]) {
@@ -19,7 +19,7 @@ pub fn role(data: &[u8]) {
     }
     let (chart, findings) = aseme_models::statechart_of(&Source::new("role.srm", text));
     assert_findings_fit(text, &findings);
-    if chart.nodes().len() <= DRAWN {
+    if chart.nodes().len() <= MAX_DRAWN_NODES {
         assert!(!aseme::to_text(&chart).is_empty());
         assert!(yase_export::to_svg(&chart).ends_with("</svg>\n"));
         assert!(serde_json::to_value(aseme::to_json(&chart)).is_ok_and(|json| json.is_object()));

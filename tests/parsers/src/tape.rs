@@ -13,7 +13,7 @@ static WHOLE: LazyLock<Vec<u8>> = LazyLock::new(|| recorded().expect("a tape is 
 pub fn tape(data: &[u8]) {
     read(data.to_vec());
     let messages = read(damaged(data));
-    assert!(!data.is_empty() || messages == 2 * EACH, "{messages} messages of the whole tape");
+    assert!(!data.is_empty() || messages == 2 * MESSAGES_PER_TOPIC, "{messages} messages of the whole tape");
 }
 
 /// Reads all records, decodes messages where possible, and returns the number of messages before
@@ -51,7 +51,7 @@ fn damaged(edits: &[u8]) -> Vec<u8> {
 }
 
 /// Number of messages on each topic.
-const EACH: usize = 8;
+const MESSAGES_PER_TOPIC: usize = 8;
 
 /// A tape of messages on two topics.
 fn recorded() -> Result<Vec<u8>, Box<dyn std::error::Error>> {
@@ -61,7 +61,7 @@ fn recorded() -> Result<Vec<u8>, Box<dyn std::error::Error>> {
     hub.observe(Box::new(tape.clone()));
     let mut referee = hub.publisher(topics::ANNOUNCEMENT, "referee")?;
     let mut body = hub.publisher(topics::SENSORS, "body")?;
-    for number in 0..EACH as u64 {
+    for number in 0..MESSAGES_PER_TOPIC as u64 {
         let now = Timestamp::from_nanos(400_000_000 * number);
         referee.publish(Announcement { team: 3, seconds_left: 600.0, ..Announcement::default() }, now);
         body.publish(Sensors { head_yaw: 0.5, ..Sensors::default() }, now);

@@ -24,7 +24,7 @@ const ATTACKER: &str = "../config/rcsssmj.xml";
 const K1_ATTACKER: &str = "../config/rcsssmj_k1.xml";
 const GOALIE: &str = "../config/rcsssmj_goalie.xml";
 /// The longest run, s.
-const LONGEST: u64 = 300;
+const MAX_RUN: u64 = 300;
 
 /// Whether the server can be started; says so if it cannot.
 fn has_server() -> bool {
@@ -70,7 +70,7 @@ impl Run {
 
     /// When the attacker has scored for the first time, s.
     fn first_goal(&mut self) -> Option<u64> {
-        (1..=LONGEST).find(|second| {
+        (1..=MAX_RUN).find(|second| {
             self.run_until(*second);
             self.blackboard.read(ANNOUNCEMENT).unwrap().own_score > 0
         })
@@ -133,7 +133,7 @@ fn a_film_of_a_goal_on_the_soccer_server() {
     }
     let mut run = Run::new(ATTACKER, 1, "");
     let mut scenes = Vec::new();
-    let goal = (1..=LONGEST).find(|second| {
+    let goal = (1..=MAX_RUN).find(|second| {
         run.run_until(*second);
         let scored = run.blackboard.read(ANNOUNCEMENT).unwrap().own_score > 0;
         if !scored && run.blackboard.read(BALL).is_some() {
@@ -192,24 +192,24 @@ fn scores(configuration: &str, variable: &str) {
 
 /// Shots, and how many of them a goalie has to save.
 const SHOTS: u32 = 10;
-const SAVED: u32 = 7;
+const MIN_SAVES: u32 = 7;
 /// The position of the ball before a shot, m: ahead, and at most to a side.
-const SHOT: (f64, f64) = (-20.5, 0.7);
+const SHOT_POSITION: (f64, f64) = (-20.5, 0.7);
 /// The speed of a shot, m/s: it slows down to about 1 m/s at the goal line.
-const SPEED: f64 = 4.1;
+const SHOT_SPEED: f64 = 4.1;
 /// The goal line, m, and how far from its middle shots cross it at most.
-const LINE: f64 = -27.5;
-const ASIDE: f64 = 0.5;
+const GOAL_LINE: f64 = -27.5;
+const MAX_LATERAL: f64 = 0.5;
 /// The ball keeps its speed to the side longer than that ahead: the server's friction acts along
 /// axes. It comes by so much farther to the side than a straight line.
-const BEND: f64 = 1.75;
+const LATERAL_DRIFT: f64 = 1.75;
 /// Seconds that the goalie has to take its place, and those in which a shot comes to its end.
-const PLACING: u64 = 8;
-const ROLLING: u64 = 6;
+const PLACING_SECONDS: u64 = 8;
+const ROLLING_SECONDS: u64 = 6;
 
 /// Lets the ball lie and then roll; returns whether the goal was hit.
 fn shoot(run: &mut Run, server: &mut Monitor, second: &mut u64, y: f64, to: f64) -> bool {
-    let at = [SHOT.0, y, 0.11];
+    let at = [SHOT_POSITION.0, y, 0.11];
     server.send(&Instruction::DropBall).unwrap();
     server.send(&Instruction::PlaceBall { at, velocity: [0.0; 3] }).unwrap();
     let mut pass = |run: &mut Run, server: &mut Monitor, seconds: u64| {
@@ -219,14 +219,14 @@ fn shoot(run: &mut Run, server: &mut Monitor, second: &mut u64, y: f64, to: f64)
             server.drain().unwrap();
         }
     };
-    pass(run, server, PLACING);
+    pass(run, server, PLACING_SECONDS);
     let before = run.blackboard.read(ANNOUNCEMENT).unwrap().opponent_score;
-    let (x, y) = (LINE - at[0], (to - at[1]) / BEND);
+    let (x, y) = (GOAL_LINE - at[0], (to - at[1]) / LATERAL_DRIFT);
     let length = libm::hypot(x, y);
-    let velocity = [SPEED * x / length, SPEED * y / length, 0.0];
+    let velocity = [SHOT_SPEED * x / length, SHOT_SPEED * y / length, 0.0];
     server.send(&Instruction::DropBall).unwrap();
     server.send(&Instruction::PlaceBall { at, velocity }).unwrap();
-    pass(run, server, ROLLING);
+    pass(run, server, ROLLING_SECONDS);
     run.blackboard.read(ANNOUNCEMENT).unwrap().opponent_score > before
 }
 
@@ -247,7 +247,7 @@ fn a_goalie_stays_between_ball_and_goal_and_saves_slow_shots() {
     let mut saved = 0;
     for shot in 0..SHOTS {
         let mut share = || 2.0 * f64::from(chance.next_u32()) / f64::from(u32::MAX) - 1.0;
-        let (from, to) = (SHOT.1 * share(), ASIDE * share());
+        let (from, to) = (SHOT_POSITION.1 * share(), MAX_LATERAL * share());
         let is_goal = shoot(&mut run, &mut monitor, &mut second, from, to);
         let pose = run.blackboard.read(POSE).unwrap();
         println!(
@@ -259,9 +259,9 @@ fn a_goalie_stays_between_ball_and_goal_and_saves_slow_shots() {
     // Shots at the empty goal are goals, those that cross the line outermost, too.
     let (team, at) = ("Monas".to_owned(), [0.0, 10.0, 0.68]);
     monitor.send(&Instruction::PlaceRobot { team, number: 1, at, heading: 0.0 }).unwrap();
-    for to in [-ASIDE, 0.0, ASIDE] {
-        assert!(shoot(&mut run, &mut monitor, &mut second, SHOT.1, to), "an empty goal, {to}");
+    for to in [-MAX_LATERAL, 0.0, MAX_LATERAL] {
+        assert!(shoot(&mut run, &mut monitor, &mut second, SHOT_POSITION.1, to), "an empty goal, {to}");
     }
     println!("{saved} of {SHOTS} shots saved");
-    assert!(saved >= SAVED, "{saved} of {SHOTS} saved");
+    assert!(saved >= MIN_SAVES, "{saved} of {SHOTS} saved");
 }

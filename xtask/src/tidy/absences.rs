@@ -6,10 +6,10 @@ use super::source::{code, without_tests};
 use super::workspace::{Crate, TextFile, Workspace};
 
 /// Threads, sockets, files, the environment, other processes.
-const OUTSIDE: [&str; 5] = ["std::thread", "std::net", "std::fs", "std::env", "std::process"];
+const OUTSIDE_WORLD: [&str; 5] = ["std::thread", "std::net", "std::fs", "std::env", "std::process"];
 
 /// The wall clock and collections with random order.
-const CHANCE: [&str; 4] = ["std::time::Instant", "std::time::SystemTime", "HashMap", "HashSet"];
+const NONDETERMINISM: [&str; 4] = ["std::time::Instant", "std::time::SystemTime", "HashMap", "HashSet"];
 
 /// Standard output and standard error.
 const PRINTING: [&str; 4] = ["println!", "print!", "eprintln!", "eprint!"];
@@ -26,73 +26,73 @@ struct Absence {
 const ABSENCES: [Absence; 29] = [
     Absence {
         crate_name: "narukom",
-        names: &[&OUTSIDE, &CHANCE, &PRINTING, &["Agent", "Activity", "Statechart"]],
+        names: &[&OUTSIDE_WORLD, &NONDETERMINISM, &PRINTING, &["Agent", "Activity", "Statechart"]],
         except: &[],
         because: "the owner of a hub decides when messages move",
     },
     Absence {
         crate_name: "yase",
-        names: &[&OUTSIDE, &CHANCE, &PRINTING, &["narukom", "Blackboard", "Activity"]],
+        names: &[&OUTSIDE_WORLD, &NONDETERMINISM, &PRINTING, &["narukom", "Blackboard", "Activity"]],
         except: &[],
         because: "the machine accesses its environment only through the trait Host",
     },
     Absence {
         crate_name: "yase-expression",
-        names: &[&OUTSIDE, &CHANCE, &PRINTING, &["Machine", "Statechart", "narukom"]],
+        names: &[&OUTSIDE_WORLD, &NONDETERMINISM, &PRINTING, &["Machine", "Statechart", "narukom"]],
         except: &[],
         because: "an expression knows the data of one moment, not what runs it",
     },
     Absence {
         crate_name: "yase-scxml",
-        names: &[&OUTSIDE, &CHANCE, &PRINTING, &["narukom", "Blackboard", "Activity"]],
+        names: &[&OUTSIDE_WORLD, &NONDETERMINISM, &PRINTING, &["narukom", "Blackboard", "Activity"]],
         except: &[],
         because: "a session runs on a clock and a platform that its caller provides",
     },
     Absence {
         crate_name: "yase-explore",
-        names: &[&OUTSIDE, &CHANCE, &PRINTING, &["narukom", "Blackboard", "Activity"]],
+        names: &[&OUTSIDE_WORLD, &NONDETERMINISM, &PRINTING, &["narukom", "Blackboard", "Activity"]],
         except: &[],
         because: "an exploration is a function of the chart and its environment",
     },
     Absence {
         crate_name: "yase-export",
-        names: &[&OUTSIDE, &CHANCE, &PRINTING, &["Machine", "Host", "narukom"]],
+        names: &[&OUTSIDE_WORLD, &NONDETERMINISM, &PRINTING, &["Machine", "Host", "narukom"]],
         except: &[],
         because: "a drawing needs the model only",
     },
     Absence {
         crate_name: "yase-codegen",
-        names: &[&OUTSIDE, &CHANCE, &PRINTING, &["narukom", "Blackboard", "Activity"]],
+        names: &[&OUTSIDE_WORLD, &NONDETERMINISM, &PRINTING, &["narukom", "Blackboard", "Activity"]],
         except: &[],
         because: "generated code is a function of the chart",
     },
     Absence {
         crate_name: "aseme",
-        names: &[&OUTSIDE, &CHANCE, &PRINTING, &["Machine", "narukom"]],
+        names: &[&OUTSIDE_WORLD, &NONDETERMINISM, &PRINTING, &["Machine", "narukom"]],
         except: &[],
         because: "roles are text and data; how a chart is run is not theirs",
     },
     Absence {
         crate_name: "aseme-models",
-        names: &[&OUTSIDE, &CHANCE, &PRINTING, &["Machine", "narukom"]],
+        names: &[&OUTSIDE_WORLD, &NONDETERMINISM, &PRINTING, &["Machine", "narukom"]],
         except: &[],
         because: "models are text and data; running them is the task of other crates",
     },
     Absence {
         crate_name: "aseme-verify",
-        names: &[&OUTSIDE, &CHANCE, &PRINTING, &["narukom", "Blackboard"]],
+        names: &[&OUTSIDE_WORLD, &NONDETERMINISM, &PRINTING, &["narukom", "Blackboard"]],
         except: &[],
         because: "a chart is explored without its program, and with the same result on every machine",
     },
     Absence {
         crate_name: "aseme-codegen",
-        names: &[&["std::thread", "std::net", "std::process"], &CHANCE, &PRINTING, &["Machine"]],
+        names: &[&["std::thread", "std::net", "std::process"], &NONDETERMINISM, &PRINTING, &["Machine"]],
         except: &[],
         because: "generated code is the same on every build",
     },
     Absence {
         crate_name: "monas-tape",
-        names: &[&["std::net"], &CHANCE, &PRINTING, &["Agent", "Talws"]],
+        names: &[&["std::net"], &NONDETERMINISM, &PRINTING, &["Agent", "Talws"]],
         except: &[],
         because: "a tape stores messages independently of their senders",
     },
@@ -104,25 +104,25 @@ const ABSENCES: [Absence; 29] = [
     },
     Absence {
         crate_name: "monas-robot",
-        names: &[&OUTSIDE, &CHANCE, &PRINTING, &["Nao", "monas_sim", "Talws"]],
+        names: &[&OUTSIDE_WORLD, &NONDETERMINISM, &PRINTING, &["Nao", "monas_sim", "Talws"]],
         except: &[],
         because: "it defines the interface of bodies, not a body",
     },
     Absence {
         crate_name: "monas-core",
-        names: &[&OUTSIDE, &CHANCE, &PRINTING, &["Talws", "monas_sim", "monas_soccer"]],
+        names: &[&OUTSIDE_WORLD, &NONDETERMINISM, &PRINTING, &["Talws", "monas_sim", "monas_soccer"]],
         except: &[],
         because: "agents and charts run in any time and on any thread",
     },
     Absence {
         crate_name: "monas-config",
-        names: &[&["std::thread", "std::net", "std::process"], &CHANCE, &PRINTING, &["Talws"]],
+        names: &[&["std::thread", "std::net", "std::process"], &NONDETERMINISM, &PRINTING, &["Talws"]],
         except: &[],
         because: "a configuration is a function of its files",
     },
     Absence {
         crate_name: "monas-module",
-        names: &[&["std::thread", "std::net", "std::process"], &CHANCE, &PRINTING, &["Talws"]],
+        names: &[&["std::thread", "std::net", "std::process"], &NONDETERMINISM, &PRINTING, &["Talws"]],
         except: &[],
         because: "loading a module runs none of its activities",
     },
@@ -144,37 +144,41 @@ const ABSENCES: [Absence; 29] = [
     },
     Absence {
         crate_name: "monas-vision",
-        names: &[&OUTSIDE, &CHANCE, &PRINTING, &["narukom", "Activity", "monas_robot"]],
+        names: &[&OUTSIDE_WORLD, &NONDETERMINISM, &PRINTING, &["narukom", "Activity", "monas_robot"]],
         except: &[],
         because: "what an image shows is a function of the image and the pose of its camera",
     },
     Absence {
         crate_name: "monas-sim",
-        names: &[&OUTSIDE, &CHANCE, &PRINTING, &["Talws", "Activity", "Statechart"]],
+        names: &[&OUTSIDE_WORLD, &NONDETERMINISM, &PRINTING, &["Talws", "Activity", "Statechart"]],
         except: &[],
         because: "the field is a pure function of its commands and its seed",
     },
     Absence {
         crate_name: "monas-soccer",
-        names: &[&OUTSIDE, &CHANCE, &PRINTING, &["monas_sim", "Nao", "Talws"]],
+        names: &[&OUTSIDE_WORLD, &NONDETERMINISM, &PRINTING, &["monas_sim", "Nao", "Talws"]],
         except: &[],
         because: "soccer is played on any body and by any runtime",
     },
     Absence {
         crate_name: "monas-match",
-        names: &[&["std::thread", "std::net", "std::env", "std::process"], &CHANCE, &PRINTING],
+        names: &[&["std::thread", "std::net", "std::env", "std::process"], &NONDETERMINISM, &PRINTING],
         except: &[],
         because: "a match runs in simulated time; pacing and display belong to its callers",
     },
     Absence {
         crate_name: "monas-eval",
-        names: &[&["std::thread", "std::net", "std::env", "Instant", "SystemTime"], &CHANCE, &PRINTING],
+        names: &[
+            &["std::thread", "std::net", "std::env", "Instant", "SystemTime"],
+            &NONDETERMINISM,
+            &PRINTING,
+        ],
         except: &[],
         because: "its caller measures the time",
     },
     Absence {
         crate_name: "narukom-build",
-        names: &[&["std::thread", "std::net"], &CHANCE],
+        names: &[&["std::thread", "std::net"], &NONDETERMINISM],
         except: &[],
         because: "generated code is the same on every build",
     },

@@ -6,7 +6,7 @@ use super::source::{code, without_tests};
 use super::workspace::Workspace;
 
 /// The folder of bodies, and those of tests and of this check, which name kinds.
-const EXEMPT: [&str; 3] = ["robots", "tests", "xtask"];
+const EXEMPT_FOLDERS: [&str; 3] = ["robots", "tests", "xtask"];
 
 pub(crate) fn check(workspace: &Workspace) -> Vec<TidyFinding> {
     let kinds = kinds(workspace);
@@ -14,7 +14,7 @@ pub(crate) fn check(workspace: &Workspace) -> Vec<TidyFinding> {
     for file in workspace.files.iter().filter(|file| {
         let is_code = file.path.extension().is_some_and(|ending| ending == "rs");
         is_code
-            && !EXEMPT.iter().any(|folder| file.path.starts_with(folder))
+            && !EXEMPT_FOLDERS.iter().any(|folder| file.path.starts_with(folder))
             && !file.path.components().any(|part| part.as_os_str() == "tests")
     }) {
         let code = without_tests(&code(&file.text));

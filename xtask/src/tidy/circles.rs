@@ -10,7 +10,7 @@ use super::source::{code, without_tests};
 use super::workspace::{Crate, TextFile, Workspace};
 
 /// The most modules in a circle.
-const MOST: usize = 3;
+const MAX_MODULES: usize = 3;
 
 /// The modules that each top-level module imports.
 type Imports = BTreeMap<String, BTreeSet<String>>;
@@ -28,7 +28,7 @@ fn measure(workspace: &Workspace, member: &Crate) -> Measure {
         owner: member.name.clone(),
         check: Check::Circle,
         count: circle.len(),
-        limit: MOST,
+        limit: MAX_MODULES,
         findings: vec![finding],
     }
 }

@@ -20,7 +20,7 @@ const EXPECTED: [&str; 8] = [
 ];
 
 /// A library opens with at least this many lines of prose, including an example.
-const PROSE: usize = 12;
+const MIN_PROSE: usize = 12;
 
 /// Prefixes of paths of the project in documents.
 const FOLDERS: [&str; 15] = [
@@ -62,9 +62,9 @@ fn missing_documents(workspace: &Workspace) -> impl Iterator<Item = TidyFinding>
 fn opening(workspace: &Workspace, member: &Crate) -> Option<TidyFinding> {
     let library = workspace.file(member.library.as_ref()?)?;
     let prose: Vec<&str> = library.text.lines().take_while(|line| line.starts_with("//!")).collect();
-    let fault = if prose.len() < PROSE {
+    let fault = if prose.len() < MIN_PROSE {
         format!(
-            "`{}` opens with {} lines of prose; {PROSE} say what it is, why so, and how to use it",
+            "`{}` opens with {} lines of prose; {MIN_PROSE} say what it is, why so, and how to use it",
             member.name,
             prose.len()
         )

@@ -52,13 +52,13 @@ const FOLDERS: [&str; 8] =
     ["charts", "methodology", "messages", "runtime", "robots", "soccer", "studio", "cli"];
 
 /// Bodies: only the binary depends on them.
-const ROBOTS: u8 = 15;
+const ROBOTS_LAYER: u8 = 15;
 
 /// Generated statecharts: they depend on activities and messages, and programs link them.
-const STATECHARTS: u8 = 14;
+const STATECHARTS_LAYER: u8 = 14;
 
 /// Examples, benches, whole-match tests and xtask: nothing depends on them.
-const TOP: u8 = 18;
+const TOP_LAYER: u8 = 18;
 
 pub(crate) fn check(workspace: &Workspace) -> Vec<TidyFinding> {
     workspace.crates.iter().flat_map(|member| check_crate(workspace, member)).collect()
@@ -85,7 +85,7 @@ fn check_crate(workspace: &Workspace, member: &Crate) -> Vec<TidyFinding> {
 /// higher one.
 fn arrow(member: &Crate, layer: u8, target: &Crate, dependency: &Dependency) -> Option<String> {
     let target_layer = layer_of(target)?;
-    if is_body(target) && layer < TOP && member.name != "monas-cli" {
+    if is_body(target) && layer < TOP_LAYER && member.name != "monas-cli" {
         return Some(format!("`{}` knows the body `{}`: only the binary may", member.name, target.name));
     }
     let allowed = target_layer < layer || (dependency.is_dev && target_layer == layer);
@@ -111,12 +111,12 @@ fn layer_of(member: &Crate) -> Option<u8> {
         return Some(layer);
     }
     if member.folder.starts_with("statecharts") {
-        return Some(STATECHARTS);
+        return Some(STATECHARTS_LAYER);
     }
     if member.folder.starts_with("robots") {
-        return Some(ROBOTS);
+        return Some(ROBOTS_LAYER);
     }
-    (!is_product(member)).then_some(TOP)
+    (!is_product(member)).then_some(TOP_LAYER)
 }
 
 fn line_of(workspace: &Workspace, manifest: &Path, dependency: &str) -> usize {

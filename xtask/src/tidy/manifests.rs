@@ -7,7 +7,7 @@ use super::TidyFinding;
 use super::workspace::{TextFile, Workspace};
 
 /// Lines that every manifest must contain.
-const SHARED: [&str; 6] = [
+const SHARED_LINES: [&str; 6] = [
     "version.workspace = true",
     "edition.workspace = true",
     "rust-version.workspace = true",
@@ -38,7 +38,7 @@ fn own_versions(manifest: &TextFile) -> Vec<TidyFinding> {
 }
 
 fn missing_settings(manifest: &TextFile) -> Vec<TidyFinding> {
-    let missing = SHARED.iter().filter(|setting| !manifest.text.lines().any(|line| line == **setting));
+    let missing = SHARED_LINES.iter().filter(|setting| !manifest.text.lines().any(|line| line == **setting));
     missing.map(|setting| TidyFinding::new(&manifest.path, 1, format!("`{setting}` is missing"))).collect()
 }
 
@@ -104,7 +104,7 @@ mod tests {
 
     #[test]
     fn settings_are_shared() {
-        let complete = SHARED.join("\n");
+        let complete = SHARED_LINES.join("\n");
         assert!(missing_settings(&manifest(&complete)).is_empty());
         let without_lints = complete.replace("[lints]", "");
         assert_eq!(missing_settings(&manifest(&without_lints)).len(), 1);

@@ -7,13 +7,13 @@ use super::TidyFinding;
 use super::workspace::Workspace;
 
 /// The page that lists the path.
-const MAP: &str = "ARCHITECTURE.md";
+const MAP_FILE: &str = "ARCHITECTURE.md";
 
 /// The heading above the list.
 const HEADING: &str = "## The path of a message";
 
 /// The path has at most this many files.
-const MOST: usize = 20;
+const MAX_FILES: usize = 20;
 
 /// One stop of the path: its line in the map, its file, and what the text says of it.
 struct Stop<'a> {
@@ -23,18 +23,18 @@ struct Stop<'a> {
 }
 
 pub(crate) fn check(workspace: &Workspace) -> Vec<TidyFinding> {
-    let Some(map) = workspace.file(Path::new(MAP)) else { return Vec::new() };
+    let Some(map) = workspace.file(Path::new(MAP_FILE)) else { return Vec::new() };
     let stops = stops(&map.text);
     let mut findings = Vec::new();
-    if stops.is_empty() || stops.len() > MOST {
-        let message = format!("the path of a message has {} files: 1 to {MOST}", stops.len());
-        findings.push(TidyFinding::new(MAP, 1, message));
+    if stops.is_empty() || stops.len() > MAX_FILES {
+        let message = format!("the path of a message has {} files: 1 to {MAX_FILES}", stops.len());
+        findings.push(TidyFinding::new(MAP_FILE, 1, message));
     }
     for stop in &stops {
         let Some(file) = workspace.file(Path::new(stop.file)) else { continue };
         let missing = functions(&stop.text).filter(|name| !defines(&file.text, name));
         findings.extend(missing.map(|name| {
-            TidyFinding::new(MAP, stop.line, format!("`{}` does not define `{name}`", stop.file))
+            TidyFinding::new(MAP_FILE, stop.line, format!("`{}` does not define `{name}`", stop.file))
         }));
     }
     findings

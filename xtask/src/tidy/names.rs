@@ -1,4 +1,4 @@
-//! Names of types and functions that docs/vocabulary.md excludes.
+//! Names of types, functions and constants that docs/vocabulary.md excludes.
 
 use super::TidyFinding;
 use super::source::code;
@@ -12,10 +12,16 @@ const TYPE_WORDS: [&str; 12] = [
 /// Words in the name of a function.
 const FUNCTION_WORDS: [&str; 6] = ["obey", "obeys", "heed", "tell", "tells", "told"];
 
+/// Names of constants that do not name a quantity: `MAX_STATES` is not `MOST`.
+const CONSTANTS: [&str; 15] = [
+    "MOST", "LEAST", "LONGEST", "SHORTEST", "LARGEST", "SMALLEST", "GREATEST", "FEWEST", "FASTEST",
+    "SLOWEST", "DEEPEST", "WIDEST", "SOON", "LATE", "PATIENCE",
+];
+
 /// Terms of the domain: an activity of the thesis, and a part of the goal.
 const ALLOWED: [&str; 2] = ["LedHandler", "GoalPost"];
 
-const TYPE_KEYWORDS: [&str; 5] = ["struct", "enum", "trait", "type", "union"];
+const KEYWORDS: [&str; 8] = ["fn", "const", "static", "struct", "enum", "trait", "type", "union"];
 
 pub(crate) fn check(workspace: &Workspace) -> Vec<TidyFinding> {
     workspace.files.iter().filter(|file| is_checked(file)).flat_map(check_file).collect()
@@ -31,7 +37,11 @@ fn check_file(file: &TextFile) -> Vec<TidyFinding> {
     let mut findings = Vec::new();
     for (index, line) in code.lines().enumerate() {
         for (keyword, name) in declarations(line) {
-            let word = if keyword == "fn" { function_word(name) } else { type_word(name) };
+            let word = match keyword {
+                "fn" => function_word(name),
+                "const" | "static" => CONSTANTS.into_iter().find(|&word| word == name),
+                _ => type_word(name),
+            };
             findings.extend(word.map(|word| {
                 let message = format!("`{name}`: `{word}` is not used in names, see docs/vocabulary.md");
                 TidyFinding::new(&file.path, index + 1, message)
@@ -44,7 +54,7 @@ fn check_file(file: &TextFile) -> Vec<TidyFinding> {
 /// The declarations in a line: keyword and name.
 fn declarations(line: &str) -> impl Iterator<Item = (&str, &str)> {
     let words = || line.split(|c: char| !c.is_alphanumeric() && c != '_').filter(|word| !word.is_empty());
-    words().zip(words().skip(1)).filter(|(keyword, _)| *keyword == "fn" || TYPE_KEYWORDS.contains(keyword))
+    words().zip(words().skip(1)).filter(|(keyword, _)| KEYWORDS.contains(keyword))
 }
 
 /// The excluded word that a type's name ends with.
@@ -84,6 +94,15 @@ mod tests {
     }
 
     #[test]
+    fn superlatives_are_not_names_of_constants() {
+        let text =
+            "const MOST: usize = 3;\nstatic LATE: u8 = 0;\nconst MOST_PLAYED: u8 = 1;\nconst fn most() {}\n";
+        let end = "is not used in names, see docs/vocabulary.md";
+        let expected = [format!("a.rs:1: `MOST`: `MOST` {end}"), format!("a.rs:2: `LATE`: `LATE` {end}")];
+        assert_eq!(found("a.rs", text), expected);
+    }
+
+    #[test]
     fn domain_terms_comments_and_generated_charts_are_exempt() {
         assert!(found("a.rs", "struct LedHandler;\nenum GoalPost {}\n// struct Desk;\n").is_empty());
         assert!(found("statecharts/a/src/lib.rs", "fn tell() {}\n").is_empty());
@@ -95,7 +114,12 @@ mod tests {
         let (_, avoided) = vocabulary.split_once("## Words that are not used").expect("the section exists");
         let listed: Vec<&str> = avoided.split(|c: char| !c.is_alphanumeric()).collect();
         let inflected = ["obeys", "tells"];
-        for word in TYPE_WORDS.iter().chain(&FUNCTION_WORDS).filter(|word| !inflected.contains(word)) {
+        for word in TYPE_WORDS
+            .iter()
+            .chain(&FUNCTION_WORDS)
+            .chain(&CONSTANTS)
+            .filter(|word| !inflected.contains(word))
+        {
             assert!(listed.contains(word), "{word}");
         }
     }

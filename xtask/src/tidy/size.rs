@@ -5,7 +5,7 @@ use super::allowances::{Check, Measure};
 use super::workspace::{Crate, Workspace};
 
 /// The most lines under `src`, and the most under `tests`, `benches` and `examples` together.
-const MOST: usize = 15_000;
+const MAX_LINES: usize = 15_000;
 
 pub(crate) fn measures(workspace: &Workspace) -> Vec<Measure> {
     workspace.crates.iter().flat_map(|member| measure(workspace, member)).collect()
@@ -16,12 +16,12 @@ fn measure(workspace: &Workspace, member: &Crate) -> [Measure; 2] {
         |(check, folders)| {
             let count = lines(workspace, member, folders);
             let message = format!(
-                "`{}`: {count} lines of Rust under {}; {MOST} at most",
+                "`{}`: {count} lines of Rust under {}; {MAX_LINES} at most",
                 member.name,
                 folders.join(", ")
             );
             let finding = TidyFinding::new(member.folder.join("Cargo.toml"), 1, message);
-            Measure { owner: member.name.clone(), check, count, limit: MOST, findings: vec![finding] }
+            Measure { owner: member.name.clone(), check, count, limit: MAX_LINES, findings: vec![finding] }
         },
     )
 }

@@ -6,7 +6,7 @@ use super::source::code;
 use super::workspace::{TextFile, Workspace};
 
 /// Never in Rust code.
-const CODE: [(&str, &str); 6] = [
+const BANNED_IN_CODE: [(&str, &str); 6] = [
     ("todo!", "finish it or leave it out"),
     ("unimplemented!", "finish it or leave it out"),
     ("dbg!", "a trace of debugging"),
@@ -26,7 +26,7 @@ const MAY_SLEEP: [&str; 4] = [
 ];
 
 /// Never in any file. Split in two, so that this file does not contain them.
-const ANYWHERE: [((&str, &str), &str); 5] = [
+const BANNED_ANYWHERE: [((&str, &str), &str); 5] = [
     (("/wor", "k/"), "a path of one machine"),
     (("/hom", "e/"), "a path of one machine"),
     (("/roo", "t/"), "a path of one machine"),
@@ -35,7 +35,7 @@ const ANYWHERE: [((&str, &str), &str); 5] = [
 ];
 
 /// Greatest length of a file, in lines of code.
-const LONGEST: usize = 700;
+const MAX_LINES: usize = 700;
 
 pub(crate) fn check(workspace: &Workspace) -> Vec<TidyFinding> {
     workspace.files.iter().flat_map(check_file).collect()
@@ -62,7 +62,7 @@ fn line_faults(line: &str) -> impl Iterator<Item = String> {
         (line.ends_with('\r'), "a carriage return at the end of the line"),
     ];
     let blanks = blanks.into_iter().filter(|(found, _)| *found).map(|(_, fault)| fault.to_string());
-    let named = ANYWHERE.iter().map(|((first, second), why)| (format!("{first}{second}"), why));
+    let named = BANNED_ANYWHERE.iter().map(|((first, second), why)| (format!("{first}{second}"), why));
     blanks.chain(named.filter(|(text, _)| line.contains(text)).map(|(text, why)| format!("`{text}`: {why}")))
 }
 
@@ -70,14 +70,14 @@ fn code_faults(file: &TextFile) -> Vec<TidyFinding> {
     let code = code(&file.text);
     let mut findings = Vec::new();
     for (index, line) in code.lines().enumerate() {
-        let faults = CODE.iter().filter(|(text, _)| line.contains(text) && !may(file, text));
+        let faults = BANNED_IN_CODE.iter().filter(|(text, _)| line.contains(text) && !may(file, text));
         findings.extend(
             faults.map(|(text, why)| TidyFinding::new(&file.path, index + 1, format!("`{text}`: {why}"))),
         );
     }
     let length = code.lines().filter(|line| !line.trim().is_empty()).count();
-    if length > LONGEST {
-        let message = format!("{length} lines of code: at {LONGEST} a file holds more than one idea");
+    if length > MAX_LINES {
+        let message = format!("{length} lines of code: at {MAX_LINES} a file holds more than one idea");
         findings.push(TidyFinding::new(&file.path, 1, message));
     }
     findings
@@ -144,8 +144,8 @@ mod tests {
 
     #[test]
     fn long_files_are_found() {
-        assert!(findings("a.rs", &"fn a() {}\n".repeat(LONGEST)).is_empty());
-        assert_eq!(findings("a.rs", &"fn a() {}\n".repeat(LONGEST + 1)).len(), 1);
-        assert!(findings("a.rs", &"// prose\n\n".repeat(LONGEST)).is_empty());
+        assert!(findings("a.rs", &"fn a() {}\n".repeat(MAX_LINES)).is_empty());
+        assert_eq!(findings("a.rs", &"fn a() {}\n".repeat(MAX_LINES + 1)).len(), 1);
+        assert!(findings("a.rs", &"// prose\n\n".repeat(MAX_LINES)).is_empty());
     }
 }

@@ -7,10 +7,10 @@ use super::source::code;
 use super::workspace::{Crate, TextFile, Workspace};
 
 /// Visibilities between private and `pub(crate)`.
-const RESTRICTED: [&str; 2] = ["pub(super)", "pub(in "];
+const RESTRICTED_VISIBILITIES: [&str; 2] = ["pub(super)", "pub(in "];
 
 /// The most per 1,000 lines of a crate's `src`, rounded down.
-const MOST: usize = 5;
+const MAX_PER_THOUSAND: usize = 5;
 
 pub(super) fn measures(workspace: &Workspace) -> Vec<Measure> {
     workspace.crates.iter().filter_map(|member| measure(workspace, member)).collect()
@@ -31,14 +31,14 @@ fn measure(workspace: &Workspace, member: &Crate) -> Option<Measure> {
         owner: member.name.clone(),
         check: Check::Visibility,
         count: rate,
-        limit: MOST,
+        limit: MAX_PER_THOUSAND,
         findings: vec![finding],
     })
 }
 
 fn count(file: &TextFile) -> usize {
     let code = code(&file.text);
-    RESTRICTED.iter().map(|restricted| code.matches(restricted).count()).sum()
+    RESTRICTED_VISIBILITIES.iter().map(|restricted| code.matches(restricted).count()).sum()
 }
 
 #[cfg(test)]

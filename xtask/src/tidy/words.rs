@@ -32,7 +32,7 @@ const BANNED: [&str; 22] = [
 ];
 
 /// Not at the beginning of a comment, which names its subject: "its kind", not "what it is".
-const QUESTIONS: [&str; 2] = ["What ", "Who "];
+const QUESTION_STARTS: [&str; 2] = ["What ", "Who "];
 
 pub(crate) fn measures(workspace: &Workspace) -> Vec<Measure> {
     Measure::by_owner(workspace, Check::Words, 0, check_file)
@@ -42,7 +42,7 @@ fn check_file(file: &TextFile) -> Vec<TidyFinding> {
     let is_code = file.path.extension().is_some_and(|extension| extension != "md");
     let mut findings = Vec::new();
     for line in prose(file) {
-        if is_code && QUESTIONS.iter().any(|word| line.text.starts_with(word)) {
+        if is_code && QUESTION_STARTS.iter().any(|word| line.text.starts_with(word)) {
             let message = "a comment names its subject and does not ask for it";
             findings.push(TidyFinding::new(&file.path, line.number, message));
         }

@@ -13,14 +13,14 @@ use yase::{Machine, MachineError, Status};
 use yase_explore::{RowInterner, StepCause, advance_and_step};
 
 /// Maximum number of steps per possible state.
-const STEPS: usize = 256;
+const MAX_STEPS_PER_STATE: usize = 256;
 
 /// Maximum number of conditions that hold on a path: each is one level of nested code, and of
 /// recursion.
-const DEPTH: usize = 256;
+const MAX_DEPTH: usize = 256;
 
 /// A name that no expression contains: it represents all other events.
-const OTHER: &str = "?";
+const OTHER_EVENT: &str = "?";
 
 pub(crate) fn search(
     chart: &Arc<CompiledChart>,
@@ -41,7 +41,7 @@ pub(crate) fn search(
     let start = search.way(&Machine::new(chart.clone()), &StepCause::Start, &[])?;
     let moves = words.events.iter().map(|event| match event {
         FlatEvent::Named(name) => StepCause::Event(name.clone()),
-        FlatEvent::Other => StepCause::Event(OTHER.to_owned()),
+        FlatEvent::Other => StepCause::Event(OTHER_EVENT.to_owned()),
         FlatEvent::Nothing => StepCause::Messages,
     });
     let moves: Vec<StepCause> = moves.collect();
@@ -80,11 +80,11 @@ impl FlatSearch<'_> {
     /// The operations after the planned conditions have been read.
     fn way(&mut self, from: &Machine, cause: &StepCause, planned: &[bool]) -> Result<FlatPath, Diagnostic> {
         self.steps += 1;
-        let most = self.limit.saturating_mul(STEPS);
+        let most = self.limit.saturating_mul(MAX_STEPS_PER_STATE);
         if self.steps > most {
             return Err(too_many(format!("it has more than {most} paths")));
         }
-        if planned.iter().filter(|holds| **holds).count() > DEPTH {
+        if planned.iter().filter(|holds| **holds).count() > MAX_DEPTH {
             return Err(self.too_deep(from, cause, planned));
         }
         let (records, to) = self.run(from, cause, planned)?;
@@ -126,10 +126,10 @@ impl FlatSearch<'_> {
     /// The error of a path on which too many conditions hold: a livelock if it does not end when
     /// all later ones hold too.
     fn too_deep(&mut self, from: &Machine, cause: &StepCause, planned: &[bool]) -> Diagnostic {
-        let later = vec![true; DEPTH.saturating_mul(DEPTH)];
+        let later = vec![true; MAX_DEPTH.saturating_mul(MAX_DEPTH)];
         match self.run(from, cause, &[planned, &later].concat()) {
             Err(found) => found,
-            Ok(_) => too_many(format!("more than {DEPTH} of its conditions hold on one path")),
+            Ok(_) => too_many(format!("more than {MAX_DEPTH} of its conditions hold on one path")),
         }
     }
 

@@ -19,20 +19,20 @@ use yase_reference::script::Input;
 
 /// The number of charts, in the short form of the test and in the long one, as in `.ci/run`; those
 /// with too many configurations are not flattened.
-const CHARTS: [u64; 2] = [1_000, 4_000];
+const CHART_COUNTS: [u64; 2] = [1_000, 4_000];
 
 /// Maximum number of states.
-const LIMIT: usize = 40;
+const MAX_STATES: usize = 40;
 
 #[test]
 fn a_flat_chart_does_what_the_machine_does() {
     let (mut flat_ones, mut actions, mut questions, mut together) = (0, 0, 0, 0);
-    let charts = CHARTS[usize::from(std::env::var_os("MONAS_LONG_TESTS").is_some())];
+    let charts = CHART_COUNTS[usize::from(std::env::var_os("MONAS_LONG_TESTS").is_some())];
     for number in 0..charts {
         let mut case = Case::numbered(number);
         case.semantics.conflict = ConflictResolution::Declared;
         let chart = simple(&case.chart);
-        let flat = match flatten(&chart, case.semantics, LIMIT) {
+        let flat = match flatten(&chart, case.semantics, MAX_STATES) {
             Ok(flat) => flat,
             Err(found) => {
                 let is_expected = found.iter().all(|it| ["E0161", "E0162"].contains(&it.code));
@@ -231,7 +231,7 @@ fn follow(flat: &FlatMachine, way: &FlatPath, (seed, step): (u64, usize), lines:
 }
 
 /// Two regions, one of which waits for the other, and a history of the second.
-const BOTH: &str = r#"
+const WAITING_REGIONS: &str = r#"
     START
     & both
       one
@@ -291,7 +291,7 @@ impl written::Host for Surroundings {
 
 #[test]
 fn a_chart_that_was_written_as_rust_runs() {
-    let chart = yase_reference::chart::chart(BOTH);
+    let chart = yase_reference::chart::chart(WAITING_REGIONS);
     let code = flatten(&chart, yase::Semantics::yase(), 20).expect("it is simple").to_rust();
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/flat/written.rs");
     if std::env::var_os("MONAS_BLESS").is_some() {

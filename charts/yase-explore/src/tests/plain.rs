@@ -18,7 +18,7 @@ use yase::{Chooser, Machine, Status};
 use yase::{CompiledChart, Node, NodeId, NodeKind, Statechart, Transition};
 
 /// Maximum number of states.
-const MOST: usize = 400;
+const MAX_STATES: usize = 400;
 
 /// The complete description of a step, and its target.
 type StepOutcomes = BTreeSet<(String, usize)>;
@@ -60,7 +60,7 @@ fn plain(
                 }
             }
         }
-        if found.states.len() > MOST {
+        if found.states.len() > MAX_STATES {
             return None;
         }
     }
@@ -202,7 +202,7 @@ fn charts_of_chance_are_explored_as_by_the_plain_way() {
         let seen = plain(&chart, &names, &RelevantState::new(&chart)).unwrap();
         assert!(are_alike(&all, &seen), "{regions:?}");
 
-        let found = explore(&chart, &mut surroundings(), MOST + 1);
+        let found = explore(&chart, &mut surroundings(), MAX_STATES + 1);
         assert!(found.is_finished());
         let shown = |state: &super::super::ExploredState| {
             (state.configuration.clone(), state.status, state.running.clone())

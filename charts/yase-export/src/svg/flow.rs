@@ -14,13 +14,13 @@ use yase::statechart::{NodeId, NodeKind, Point, Statechart, Transition, Transiti
 /// Gap between neighbours in a row.
 const GAP: f64 = 22.0;
 /// Distance between a row and the turn of its arrows, and after the turn.
-const TURN: f64 = 10.0;
+const TURN_DISTANCE: f64 = 10.0;
 /// Space for an arrow head.
-const HEAD: f64 = 14.0;
+const ARROW_HEAD_SPACE: f64 = 14.0;
 /// Gap between a label and the line above it.
 const LABEL_GAP: f64 = 6.0;
 /// Width of a loop.
-const LOOP: f64 = 18.0;
+const LOOP_WIDTH: f64 = 18.0;
 /// Gap between the ends of arrows at one side of a box.
 const END_GAP: f64 = 8.0;
 /// Height of a loop.
@@ -234,7 +234,7 @@ impl Flow {
                     cell.is_stacked = edge.offset > 0.0;
                     cell.loops = edge.offset + height.max(LOOP_HEIGHT + 8.0) + 4.0;
                     cell.height = cell.height.max(cell.loops);
-                    cell.right = cell.right.max(cell.size.0 / 2.0 + LOOP + width);
+                    cell.right = cell.right.max(cell.size.0 / 2.0 + LOOP_WIDTH + width);
                 }
                 EdgeCourse::Skip | EdgeCourse::Back => {
                     let side = usize::from(edge.course == EdgeCourse::Back);
@@ -270,11 +270,11 @@ impl Flow {
             let (above, height) =
                 (highest(|cell| cell.above), highest(|cell| cell.height.max(cell.size.1 + cell.below)));
             if !self.turns.is_empty() {
-                top += above + HEAD + if above > 0.0 { LABEL_GAP } else { 0.0 };
+                top += above + ARROW_HEAD_SPACE + if above > 0.0 { LABEL_GAP } else { 0.0 };
             }
             self.height = top + height;
             row.iter().for_each(|&place| self.cells[place].top = top);
-            top = self.height + TURN;
+            top = self.height + TURN_DISTANCE;
             self.turns.push(top);
         }
     }
@@ -298,7 +298,7 @@ impl Flow {
         }
         let half = edge.label.size().1 / 2.0;
         let label_at = match edge.at_target {
-            true => (target.axis, target.top - HEAD - edge.offset - half),
+            true => (target.axis, target.top - ARROW_HEAD_SPACE - edge.offset - half),
             false => (source.axis, source.bottom() + 4.0 + edge.offset + half),
         };
         RoutedEdge { points, label_at }
@@ -311,9 +311,10 @@ impl Flow {
         let middle = cell.top + edge.offset + (height / 2.0).max(LOOP_HEIGHT / 2.0 + 8.0);
         let middle = if edge.offset == 0.0 { middle.min(cell.middle()) } else { middle };
         let (upper, lower) = (middle - LOOP_HEIGHT / 2.0, middle + LOOP_HEIGHT / 2.0);
-        let points = vec![(side, upper), (side + LOOP, upper), (side + LOOP, lower), (side, lower)];
+        let points =
+            vec![(side, upper), (side + LOOP_WIDTH, upper), (side + LOOP_WIDTH, lower), (side, lower)];
         let label_middle = cell.top + edge.offset + (height / 2.0).max(middle - cell.top - edge.offset);
-        RoutedEdge { points, label_at: (side + LOOP + width / 2.0, label_middle) }
+        RoutedEdge { points, label_at: (side + LOOP_WIDTH + width / 2.0, label_middle) }
     }
 
     /// A path around the rows: to the left of everything drawn so far for -1, to the right for 1.
@@ -322,7 +323,7 @@ impl Flow {
         let (source, target) = (*source, *target);
         let room = (label.size().0 / 2.0).max(4.0);
         let border = if side < 0.0 { self.left } else { self.right };
-        let lane = border + side * (TURN + room);
+        let lane = border + side * (TURN_DISTANCE + room);
         let mut end = |cell: usize| {
             let cell = &mut self.cells[cell];
             (cell.axis + side * cell.size.0 / 2.0, cell.next_end(usize::from(side > 0.0)))

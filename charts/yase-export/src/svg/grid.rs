@@ -6,11 +6,11 @@ use yase::statechart::Point;
 /// Maximum size of a grid that is searched; in a larger one, arrows are straight lines.
 const MAX_PLACES: usize = 400_000;
 /// Lines closer than this are merged.
-const NEAR: f64 = 5.0;
+const MERGE_DISTANCE: f64 = 5.0;
 /// Cost of a grid point through which another line runs in the same direction.
-const ALONG: u64 = 60;
+const OVERLAP_COST: u64 = 60;
 /// Cost of a grid point covered by text.
-const LETTERS: u64 = 150;
+const TEXT_COST: u64 = 150;
 
 /// Direction of a line.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -139,8 +139,8 @@ impl Grid {
             Direction::Down | Direction::Up => self.down[place],
             Direction::Right | Direction::Left => self.across[place],
         };
-        let letters = if self.letters[place] { LETTERS } else { 0 };
-        ALONG * u64::from(along) + letters
+        let letters = if self.letters[place] { TEXT_COST } else { 0 };
+        OVERLAP_COST * u64::from(along) + letters
     }
 
     /// Unblocks all grid points.
@@ -163,7 +163,7 @@ impl Grid {
         let area = Rectangle::between(from, to);
         let lines = if from.1 == to.1 { &mut self.across } else { &mut self.down };
         let mut taken = std::mem::take(lines);
-        self.within(&area, NEAR).for_each(|place| taken[place] = taken[place].saturating_add(1));
+        self.within(&area, MERGE_DISTANCE).for_each(|place| taken[place] = taken[place].saturating_add(1));
         if from.1 == to.1 { self.across = taken } else { self.down = taken }
     }
 

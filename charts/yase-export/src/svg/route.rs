@@ -19,11 +19,11 @@ use yase::statechart::{NodeId, NodeKind, Point, Statechart, Transition, Transiti
 /// Distance from a box to the nearest line beside it.
 const CLEARANCE: f64 = 8.0;
 /// Cost of a corner, in pixels.
-const CORNER: u64 = 40;
+const CORNER_COST: u64 = 40;
 /// Cost of an end that is not in the middle of a side.
-const ASIDE: u64 = 15;
+const OFF_CENTRE_COST: u64 = 15;
 /// Minimum length of sides with more than one position for arrows.
-const LONG: f64 = 28.0;
+const MIN_SPLIT_LENGTH: f64 = 28.0;
 
 /// Draws the transitions that are not drawn among the children of a composite.
 pub(crate) fn across_borders(chart: &Statechart, layout: &mut DrawingLayout) {
@@ -178,7 +178,7 @@ impl Router {
             let side = if inward { side.reversed() } else { side };
             let place = self.grid.place((at.0 + right, at.1 + down))?;
             let (x, y) = area.centre();
-            let cost = if at.0 == x || at.1 == y { 0 } else { ASIDE };
+            let cost = if at.0 == x || at.1 == y { 0 } else { OFF_CENTRE_COST };
             Some(Port { at, place, side, cost })
         };
         ports.into_iter().filter_map(port).collect()
@@ -283,12 +283,12 @@ struct Port {
 
 /// The middle of a side, and its quarters.
 fn places_along(from: f64, to: f64) -> impl Iterator<Item = f64> {
-    let parts: &[f64] = if to - from < LONG { &[0.5] } else { &[0.5, 0.25, 0.75] };
+    let parts: &[f64] = if to - from < MIN_SPLIT_LENGTH { &[0.5] } else { &[0.5, 0.25, 0.75] };
     parts.iter().map(move |part| if *part == 0.5 { (from + to) / 2.0 } else { from + (to - from) * part })
 }
 
 fn corner(heading: Direction, next: Direction) -> u64 {
-    if heading == next { 0 } else { CORNER }
+    if heading == next { 0 } else { CORNER_COST }
 }
 
 fn head(chart: &Statechart, layout: &DrawingLayout, id: NodeId) -> Option<Rectangle> {

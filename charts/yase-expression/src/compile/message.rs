@@ -181,7 +181,7 @@ impl<'a> NameContext<'a> {
         mut known: impl Iterator<Item = &'n str> + Clone,
         form: &str,
     ) -> Diagnostic {
-        const FEW: usize = 12;
+        const MAX_LISTED_TOPICS: usize = 12;
         let diagnostic = diagnostic.with_suggestion(self.suggestions, wrong, known.clone());
         if diagnostic.hint.is_some() {
             return diagnostic;
@@ -189,7 +189,7 @@ impl<'a> NameContext<'a> {
         let mut names = BTreeSet::new();
         let are_few = known.all(|name| {
             names.insert(name);
-            names.len() <= FEW
+            names.len() <= MAX_LISTED_TOPICS
         });
         if !are_few || names.is_empty() {
             return diagnostic.with_hint(form);

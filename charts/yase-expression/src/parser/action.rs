@@ -7,7 +7,7 @@ use crate::diagnostic::{Diagnostic, Span};
 use crate::lexer::{Symbol, TokenKind};
 use crate::syntax::{Action, ActionKind, Path, TimeoutForm};
 
-const FORMS: &str = "an action is `Message.field = value`, `publish.Message`, `StartTimeout(v, 100ms)`, `raise(event)`, \
+const ACTION_FORMS: &str = "an action is `Message.field = value`, `publish.Message`, `StartTimeout(v, 100ms)`, `raise(event)`, \
                      `process_messages` or `publish_all`";
 
 impl Cursor<'_> {
@@ -160,7 +160,7 @@ impl Cursor<'_> {
     fn assignment(&mut self, actions: &mut Vec<Action>) -> Parsed<()> {
         let start = self.span().start;
         if !matches!(self.kind(), TokenKind::Word | TokenKind::Quoted) {
-            return self.refuse_here("E0118", "an action", FORMS);
+            return self.refuse_here("E0118", "an action", ACTION_FORMS);
         }
         let target = self.path()?;
         match self.kind() {
@@ -227,7 +227,7 @@ fn hint_for(name: &str) -> &'static str {
     if name.to_ascii_lowercase().contains("timeout") {
         "a timer is started by `StartTimeout(v, 100ms)` or `TimeoutAction.v.100`"
     } else {
-        FORMS
+        ACTION_FORMS
     }
 }
 

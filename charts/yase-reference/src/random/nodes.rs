@@ -8,7 +8,7 @@ use yase::statechart::{Node, NodeId, NodeKind};
 use super::Maker;
 
 /// Charts with this many nodes get no more composites.
-const MANY: usize = 28;
+const MAX_NODES_FOR_COMPOSITES: usize = 28;
 
 impl Maker<'_, '_> {
     /// Adds the children of an OR.
@@ -78,8 +78,8 @@ impl Maker<'_, '_> {
 
     fn state(&mut self, parent: NodeId, depth: usize) {
         let kind = match self.choices.below(10) {
-            5..7 if depth < 4 && self.names < MANY => NodeKind::Or,
-            7.. if depth < 3 && self.names < MANY => NodeKind::And,
+            5..7 if depth < 4 && self.names < MAX_NODES_FOR_COMPOSITES => NodeKind::Or,
+            7.. if depth < 3 && self.names < MAX_NODES_FOR_COMPOSITES => NodeKind::And,
             _ => NodeKind::Basic,
         };
         self.state_of(parent, kind, "s", depth);
@@ -121,7 +121,7 @@ impl Maker<'_, '_> {
         for _ in 0..2 + self.choices.below(2) {
             let kind = match self.choices.below(12) {
                 0 => NodeKind::Basic,
-                1 if depth < 3 && self.names < MANY => NodeKind::And,
+                1 if depth < 3 && self.names < MAX_NODES_FOR_COMPOSITES => NodeKind::And,
                 _ => NodeKind::Or,
             };
             match kind == NodeKind::Or && self.choices.percent(35) {

@@ -11,7 +11,7 @@ use yase::{
 use super::Choices;
 
 /// Limit of micro-steps, and of steps at one time.
-const LIMIT: u32 = 40;
+const MICRO_STEP_LIMIT: u32 = 40;
 
 /// How the semantics of a case is derived.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -78,7 +78,7 @@ pub(crate) const POINTS: [Point; 46] = [
 
 pub(crate) fn semantics(choices: &mut Choices<'_>) -> (Semantics, Variant) {
     let (name, mut semantics) = profile(choices);
-    semantics.limit = NonZeroU32::new(LIMIT).unwrap();
+    semantics.limit = NonZeroU32::new(MICRO_STEP_LIMIT).unwrap();
     match choices.below(10) {
         0..3 => (semantics, Variant::Profile(name)),
         3..8 => {

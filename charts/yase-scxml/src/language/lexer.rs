@@ -33,7 +33,7 @@ const SYMBOLS: [&str; 47] = [
 ];
 
 /// Symbols of ECMAScript that are outside the subset and are not in [`SYMBOLS`].
-const FOREIGN: [char; 5] = ['|', '^', '~', '`', '@'];
+const UNSUPPORTED_SYMBOLS: [char; 5] = ['|', '^', '~', '`', '@'];
 
 /// Splits a text into tokens without comments. The last token is the end.
 pub(crate) fn tokens(text: &str) -> Result<Vec<Token>, Unsupported> {
@@ -123,7 +123,7 @@ impl Lexer<'_> {
             return Ok(());
         }
         let end = start + first.len_utf8();
-        if FOREIGN.contains(&first) {
+        if UNSUPPORTED_SYMBOLS.contains(&first) {
             let message = format!("`{first}` is outside the subset of ECMAScript that is understood");
             return Err(Unsupported {
                 refusal: ScriptErrorKind::Unsupported,

@@ -8,7 +8,7 @@ use super::heap::Heap;
 use super::value::{DataValue, ScriptValue};
 
 /// Variables that only the session sets; documents only read them.
-const SYSTEM: [&str; 5] = ["_event", "_sessionid", "_name", "_ioprocessors", "_x"];
+const SYSTEM_VARIABLES: [&str; 5] = ["_event", "_sessionid", "_name", "_ioprocessors", "_x"];
 
 /// Maximum number of steps of the expressions and contents in one macrostep.
 const MAX_STEPS: u32 = 2_000_000;
@@ -163,7 +163,7 @@ impl ScriptMemory {
 }
 
 pub(crate) fn writable(name: &str) -> Result<(), EvalError> {
-    match SYSTEM.contains(&name) {
+    match SYSTEM_VARIABLES.contains(&name) {
         true => Err(EvalError::new(format!("`{name}` cannot be assigned"))),
         false => Ok(()),
     }

@@ -219,7 +219,7 @@ impl<'a> Parser<'a> {
     }
 
     fn chain(&mut self, level: usize) -> Parsed<ScriptExpression> {
-        let Some(operators) = LEVELS.get(level) else { return self.unary() };
+        let Some(operators) = OPERATORS_BY_PRECEDENCE.get(level) else { return self.unary() };
         let first = self.chain(level + 1)?;
         let mut rest = Vec::new();
         while let Some(operator) = self.operator(operators) {
@@ -459,7 +459,7 @@ impl Access {
 }
 
 /// Operators by precedence, the lowest first.
-const LEVELS: [&[(&str, Binary)]; 4] = [
+const OPERATORS_BY_PRECEDENCE: [&[(&str, Binary)]; 4] = [
     &[("===", Binary::Same), ("!==", Binary::NotSame), ("==", Binary::Equal), ("!=", Binary::NotEqual)],
     &[
         ("<", Binary::Less),

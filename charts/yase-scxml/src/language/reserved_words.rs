@@ -80,7 +80,7 @@ pub(crate) const FOREIGN_OBJECTS: [&str; 28] = [
 ];
 
 /// Words that cannot be names.
-const RESERVED: [&str; 38] = [
+const RESERVED_WORDS: [&str; 38] = [
     "break",
     "case",
     "catch",
@@ -123,7 +123,7 @@ const RESERVED: [&str; 38] = [
 
 /// Whether a word cannot be a name.
 pub(crate) fn is_reserved(word: &str) -> bool {
-    RESERVED.contains(&word)
+    RESERVED_WORDS.contains(&word)
 }
 
 /// Whether a text can be the name of a variable.

@@ -5,7 +5,7 @@ use roxmltree::Node;
 use super::DocumentReader;
 use crate::compiled_text::{CompiledText, LiteralOrExpression};
 use crate::document::DataModel;
-use crate::grammar::{ElementGrammar, OPEN, element};
+use crate::grammar::{ELEMENTS_WITH_ANY_CONTENT, ElementGrammar, element};
 use crate::language::{Location, ScriptExpression, ScriptProgram};
 use crate::xml::{elements, is_scxml, tag};
 use yase::diagnostic::{Diagnostic, Span};
@@ -16,7 +16,7 @@ impl DocumentReader<'_> {
         let name = node.tag_name().name();
         let Some(known) = element(name) else { return };
         self.check_attributes(node, known);
-        if OPEN.contains(&name) {
+        if ELEMENTS_WITH_ANY_CONTENT.contains(&name) {
             return;
         }
         for child in elements(node).filter(|&child| is_scxml(child)) {

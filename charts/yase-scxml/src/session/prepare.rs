@@ -47,7 +47,7 @@ pub(crate) enum SessionTask {
 }
 
 /// Marks tasks among the scripts of a chart; no content begins with it.
-const MARK: char = '#';
+const TASK_PREFIX: char = '#';
 
 impl SessionTask {
     fn text(&self) -> String {
@@ -58,11 +58,11 @@ impl SessionTask {
             SessionTask::Cancel(node) => ("cancel", *node),
             SessionTask::Done(node) => ("done", *node),
         };
-        format!("{MARK}{word} {}", node.0)
+        format!("{TASK_PREFIX}{word} {}", node.0)
     }
 
     fn parse(text: &str) -> Option<SessionTask> {
-        let (word, node) = text.strip_prefix(MARK)?.split_once(' ')?;
+        let (word, node) = text.strip_prefix(TASK_PREFIX)?.split_once(' ')?;
         let node = NodeId(node.parse().ok()?);
         Some(match word {
             "begin" => SessionTask::Begin,

@@ -10,7 +10,7 @@ use yase_scxml::{Session, read};
 use crate::suites::Neighbours;
 
 /// Time limit: a document that has not finished by then hangs.
-const PATIENCE: Timestamp = Timestamp::from_millis(120_000);
+const TIMEOUT: Timestamp = Timestamp::from_millis(120_000);
 
 /// A row of the suite's `index.csv`.
 #[derive(Clone, Debug)]
@@ -91,7 +91,7 @@ fn outcome(path: &Path, pass_state: &str) -> std::result::Result<(), String> {
     let mut session = Session::new(&document, platform)
         .map_err(|found| found.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "))?;
     session.start(Timestamp::ZERO).map_err(|error| error.to_string())?;
-    session.advance_to(PATIENCE).map_err(|error| error.to_string())?;
+    session.advance_to(TIMEOUT).map_err(|error| error.to_string())?;
     match session.configuration().as_slice() {
         [state] if *state == pass_state => Ok(()),
         states => Err(format!("it is in {}", states.join(", "))),

@@ -7,7 +7,7 @@ use crate::compile::{NodeIndex, NodeOrder};
 use crate::statechart::{NodeId, NodeKind, Statechart};
 
 /// Longer lists are computed during entry, to limit memory.
-const LONGEST: usize = 64;
+const MAX_STORED_ENTRIES: usize = 64;
 
 /// Most targets are close: their lists need no allocation.
 pub(crate) type InlineVec<T> = SmallVec<[T; 8]>;
@@ -40,7 +40,7 @@ pub(crate) fn between(
     let mut open: InlineVec<(NodeId, bool)> = InlineVec::new();
     push_children(chart, starts, scope, way.pop(), &mut open);
     while let Some((node, on_way)) = open.pop() {
-        if entered.len() + open.len() >= LONGEST {
+        if entered.len() + open.len() >= MAX_STORED_ENTRIES {
             return None;
         }
         entered.push(layout.place_of(node));

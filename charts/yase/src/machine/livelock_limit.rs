@@ -6,7 +6,7 @@ use crate::ids::CompoundTransitionId;
 use crate::timestamp::Timestamp;
 
 /// The number of recent transitions kept, to identify a cycle.
-pub(crate) const MEMORY: usize = 64;
+pub(crate) const KEPT_TRANSITIONS: usize = 64;
 
 /// Counts the micro-steps of a step, and the steps at one time.
 #[derive(Clone, Debug)]
@@ -14,13 +14,13 @@ pub(crate) struct LivelockLimit {
     pub(crate) micro_steps: u32,
     pub(crate) instant: Timestamp,
     pub(crate) steps: u32,
-    recent: [CompoundTransitionId; MEMORY],
+    recent: [CompoundTransitionId; KEPT_TRANSITIONS],
     taken: usize,
 }
 
 impl LivelockLimit {
     pub(crate) fn new() -> LivelockLimit {
-        let recent = [CompoundTransitionId(0); MEMORY];
+        let recent = [CompoundTransitionId(0); KEPT_TRANSITIONS];
         LivelockLimit { micro_steps: 0, instant: Timestamp::ZERO, steps: 0, recent, taken: 0 }
     }
 
@@ -57,14 +57,14 @@ impl LivelockLimit {
 
     #[inline]
     pub(crate) fn record_transition(&mut self, compound: CompoundTransitionId) {
-        self.recent[self.taken % MEMORY] = compound;
+        self.recent[self.taken % KEPT_TRANSITIONS] = compound;
         self.taken += 1;
     }
 
     /// The recorded transitions, oldest first.
     pub(crate) fn last(&self) -> Vec<CompoundTransitionId> {
-        let known = self.taken.min(MEMORY);
-        (self.taken - known..self.taken).map(|index| self.recent[index % MEMORY]).collect()
+        let known = self.taken.min(KEPT_TRANSITIONS);
+        (self.taken - known..self.taken).map(|index| self.recent[index % KEPT_TRANSITIONS]).collect()
     }
 
     /// The transitions that were taken repeatedly: the shortest sequence whose repetition makes up

@@ -14,7 +14,7 @@ use crate::statechart::NodeId;
 use crate::timestamp::Timestamp;
 
 /// The deadline of timers that have not been chosen to expire.
-const LATER: Timestamp = Timestamp::from_nanos(u64::MAX);
+const UNCHOSEN_DEADLINE: Timestamp = Timestamp::from_nanos(u64::MAX);
 
 /// The parts of a machine's state that can affect its later steps.
 ///
@@ -135,7 +135,7 @@ impl Machine {
 
     /// Postpones all timers that are set until they are chosen to expire.
     pub fn postpone_timers(&mut self) {
-        self.run.timers.postpone(LATER);
+        self.run.timers.postpone(UNCHOSEN_DEADLINE);
     }
 
     /// The timers that are set and have not expired, by number.
@@ -146,7 +146,7 @@ impl Machine {
 
     /// The timers set since the last postponement, with their durations.
     pub fn timers_started(&self) -> Vec<(usize, Duration)> {
-        let started = self.run.timers.armed().filter(|(_, it)| !it.expired && it.moment != LATER);
+        let started = self.run.timers.armed().filter(|(_, it)| !it.expired && it.moment != UNCHOSEN_DEADLINE);
         started.map(|(timer, it)| (timer, it.moment.since(self.run.now))).collect()
     }
 

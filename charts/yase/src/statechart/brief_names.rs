@@ -6,7 +6,7 @@ use super::{NodeId, StateNames, Statechart};
 
 /// The most characters of a path in a diagnostic: a composite of a formula is named by a whole
 /// term.
-const BRIEF: usize = 60;
+const MAX_PATH_LENGTH: usize = 60;
 
 /// The names of a chart's nodes in diagnostics: their paths, or [short names](StateNames) of those
 /// whose paths are long.
@@ -26,7 +26,7 @@ impl<'a> BriefNames<'a> {
     /// The name of a node.
     pub fn name(&self, node: NodeId) -> String {
         let path = self.chart.path(node);
-        match path.chars().nth(BRIEF) {
+        match path.chars().nth(MAX_PATH_LENGTH) {
             None => path,
             Some(_) => self.names.get_or_init(|| StateNames::of(self.chart)).name(node).to_owned(),
         }

@@ -9,13 +9,13 @@ use monas_diagnostics::{Explanation, FAMILIES, explanations};
 use monas_terminal::{CommandFailure, CommandOutput, Exit};
 
 /// The columns of an explanation.
-const WIDTH: usize = 80;
+const MAX_COLUMNS: usize = 80;
 
 /// How many codes are suggested instead of an unknown one, at most.
-const SUGGESTED: usize = 8;
+const MAX_SUGGESTIONS: usize = 8;
 
 /// How many characters a suggested code shares with the unknown one, at least.
-const SHARED: usize = 2;
+const MIN_COMMON_CHARACTERS: usize = 2;
 
 /// The arguments of `monas explain`.
 #[derive(Args, Debug)]
@@ -36,7 +36,7 @@ pub(crate) fn execute(
             let explained = explanations();
             let found = explained.iter().find(|it| it.code == wanted);
             let found = found.ok_or_else(|| unknown(code, &wanted, &explained))?;
-            write!(console.out, "{}", found.text(WIDTH))?;
+            write!(console.out, "{}", found.text(MAX_COLUMNS))?;
         }
     }
     Ok(Exit::Success)
@@ -55,11 +55,14 @@ fn list(console: &mut CommandOutput<'_>) -> io::Result<()> {
 
 /// Suggests the codes that begin with as many characters of the unknown one as possible.
 fn unknown(code: &str, wanted: &str, explained: &[Explanation]) -> CommandFailure {
-    let near = (SHARED..=wanted.len()).rev().filter(|&end| wanted.is_char_boundary(end)).find_map(|end| {
-        let begin_so = explained.iter().map(|it| it.code).filter(|it| it.starts_with(&wanted[..end]));
-        let codes: Vec<&str> = begin_so.take(SUGGESTED).collect();
-        (!codes.is_empty()).then(|| format!("near are {}; ", codes.join(", ")))
-    });
+    let near = (MIN_COMMON_CHARACTERS..=wanted.len())
+        .rev()
+        .filter(|&end| wanted.is_char_boundary(end))
+        .find_map(|end| {
+            let begin_so = explained.iter().map(|it| it.code).filter(|it| it.starts_with(&wanted[..end]));
+            let codes: Vec<&str> = begin_so.take(MAX_SUGGESTIONS).collect();
+            (!codes.is_empty()).then(|| format!("near are {}; ", codes.join(", ")))
+        });
     let near = near.unwrap_or_default();
     CommandFailure::Usage(format!("there is no code `{code}`; {near}`monas explain` lists all"))
 }

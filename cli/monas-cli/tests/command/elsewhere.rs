@@ -10,7 +10,7 @@ use crate::kit::{Answer, monas, root};
 use crate::running::{Running, ask, objects};
 
 /// How often a condition is checked.
-const LOOKS: usize = 100;
+const CHECKS: usize = 100;
 
 /// The project's configuration and models in a folder, with a referee that skips the phases before
 /// play.
@@ -30,7 +30,7 @@ pub(crate) fn project(folder: &Path) {
 
 /// The first message of a topic of the robot for which a condition holds.
 pub(crate) fn await_message(folder: &Path, topic: &str, holds: impl Fn(&Value) -> bool) -> Value {
-    for _ in 0..LOOKS {
+    for _ in 0..CHECKS {
         let echo = [
             "topic", "echo", topic, "--run", "game", "--host", "blue-2", "--for", "300ms", "--format", "json",
         ];
@@ -110,9 +110,9 @@ fn topics_are_inspected_and_published_over_a_link() {
     assert_eq!((echo.code, heard.len()), (Some(0), 2), "{}", echo.err);
     assert!(heard.iter().all(|seen| seen["from"] == "blue-2" && seen["message"].is_object()), "{heard:?}");
     // The list is of the moment: the first message may come after the peer.
-    let mut lists = (0..LOOKS).map(|_| over(&["list", "body/sensors"]).out);
-    assert!(lists.any(|list| list.contains("from blue-2")), "no message arrived in {LOOKS} lists");
-    let mut details = (0..LOOKS).map(|_| over(&["info", "body/sensors"]).out);
+    let mut lists = (0..CHECKS).map(|_| over(&["list", "body/sensors"]).out);
+    assert!(lists.any(|list| list.contains("from blue-2")), "no message arrived in {CHECKS} lists");
+    let mut details = (0..CHECKS).map(|_| over(&["info", "body/sensors"]).out);
     let received = details.find(|info| info.contains("received from other hosts: blue-2"));
     let received = received.expect("a message arrives in so many looks");
     assert!(!received.contains("nothing was published"), "{received}");

@@ -11,10 +11,10 @@ use crate::kit::{Answer, monas, root};
 use crate::running::{Running, ask};
 
 /// The agents of a robot with the activities of the example `faulty`.
-const HEAD: &str = "<agent frequency=\"50\"><name>Head</name><activity>Faulty</activity></agent>\n";
+const FAULTY_AGENTS: &str = "<agent frequency=\"50\"><name>Head</name><activity>Faulty</activity></agent>\n";
 
 /// Agents with a chart that loops without a wait.
-const MIND: &str = "<agent><name>Mind</name><statechart>mind.srm</statechart></agent>\n";
+const LOOPING_CHART: &str = "<agent><name>Mind</name><statechart>mind.srm</statechart></agent>\n";
 
 /// A match in a folder: a robot of Blue with these agents, and one of Red with a list.
 fn match_of(agents: &str, folder: &Path) -> PathBuf {
@@ -49,7 +49,7 @@ fn run(folder: &Path, config: &Path, more: &[&str], fault: &str) -> Command {
 fn an_interrupted_match_whose_activity_does_not_return_ends_and_names_it() {
     for mode in [&[][..], &["--pace", "1"]] {
         let folder = tempfile::tempdir().expect("a folder");
-        let config = match_of(HEAD, folder.path());
+        let config = match_of(FAULTY_AGENTS, folder.path());
         let tape = folder.path().join("hung.mcap").display().to_string();
         let more = [&["--no-control", "--record", &tape][..], mode].concat();
         let mut hung = Running::of(&mut run(folder.path(), &config, &more, "hang"), "");
@@ -68,7 +68,7 @@ fn an_interrupted_match_whose_activity_does_not_return_ends_and_names_it() {
 #[test]
 fn in_real_time_the_others_play_on_beside_an_activity_that_does_not_return() {
     let folder = tempfile::tempdir().expect("a folder");
-    let config = match_of(HEAD, folder.path());
+    let config = match_of(FAULTY_AGENTS, folder.path());
     let more = ["--realtime", "--for", "3s", "--no-control", "--format", "json"];
     let answer: Answer = run(folder.path(), &config, &more, "hang").output().expect("it starts").into();
     assert_eq!(answer.code, Some(1), "{answer:?}");
@@ -84,7 +84,7 @@ fn in_real_time_the_others_play_on_beside_an_activity_that_does_not_return() {
 fn a_second_interrupt_ends_a_hung_match_at_once() {
     for mode in [&[][..], &["--pace", "1"]] {
         let folder = tempfile::tempdir().expect("a folder");
-        let config = match_of(HEAD, folder.path());
+        let config = match_of(FAULTY_AGENTS, folder.path());
         let more = [&["--no-control"][..], mode].concat();
         let mut hung = Running::of(&mut run(folder.path(), &config, &more, "hang"), "");
         hung.await_line("the activity hangs");
@@ -97,7 +97,7 @@ fn a_second_interrupt_ends_a_hung_match_at_once() {
 #[test]
 fn a_loop_without_a_wait_is_reported_once_in_real_time() {
     let folder = tempfile::tempdir().expect("a folder");
-    match_of(MIND, folder.path());
+    match_of(LOOPING_CHART, folder.path());
     let config = folder.path().join("blue.xml");
     let arguments = ["--control", "mind", "--for", "120s"];
     let mut mind = Running::of(&mut run(folder.path(), &config, &arguments, ""), "control socket: ");
@@ -129,7 +129,7 @@ fn a_loop_without_a_wait_is_reported_once_in_real_time() {
 fn a_loop_without_a_wait_ends_its_agent_in_a_match() {
     for mode in [&[][..], &["--pace", "1"]] {
         let folder = tempfile::tempdir().expect("a folder");
-        let config = match_of(MIND, folder.path());
+        let config = match_of(LOOPING_CHART, folder.path());
         let more = [&["--no-control", "--for", "1s"][..], mode].concat();
         let answer: Answer =
             run(folder.path(), &config, &more, "").output().expect("the command starts").into();

@@ -14,7 +14,7 @@ use crate::kit::{Answer, root};
 use crate::running::{Running, in_folder};
 
 /// Commands that only look at a run.
-const LOOKING: [&str; 3] = ["monas chart show ", "monas topic list ", "monas agent list"];
+const READ_ONLY_COMMANDS: [&str; 3] = ["monas chart show ", "monas topic list ", "monas agent list"];
 
 /// How often commands that only look are repeated at most.
 const REPETITIONS: usize = 20;
@@ -89,7 +89,8 @@ impl Reading {
             Block::Commands(lines) => {
                 self.said.clear();
                 self.looking.clone_from(&lines);
-                self.looking.retain(|line| LOOKING.iter().any(|command| line.starts_with(command)));
+                self.looking
+                    .retain(|line| READ_ONLY_COMMANDS.iter().any(|command| line.starts_with(command)));
                 lines.iter().for_each(|line| self.run(line));
             }
             Block::Shown(_) if self.commands == 0 => {}

@@ -15,7 +15,7 @@ use super::messages::{
 use crate::error::{Error, ErrorKind};
 
 /// File extension of control sockets.
-pub(super) const ENDING: &str = "sock";
+pub(super) const EXTENSION: &str = "sock";
 
 /// Longest reply, in bytes: a message with its names.
 const ANSWER_LIMIT: usize = 64 << 20;
@@ -32,7 +32,7 @@ pub fn control_sockets(folder: &Path) -> Vec<(String, PathBuf)> {
     }
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
     let sockets = entries.map(|entry| entry.path());
-    let named = sockets.filter(|path| path.extension().is_some_and(|end| end == ENDING));
+    let named = sockets.filter(|path| path.extension().is_some_and(|end| end == EXTENSION));
     let mut found: Vec<(String, PathBuf)> =
         named.filter_map(|path| Some((path.file_stem()?.to_str()?.to_owned(), path))).collect();
     found.sort_unstable();

@@ -18,10 +18,10 @@ const POLL_INTERVAL: Duration = Duration::from_millis(2);
 const HOST_SEARCH_POLLS: u32 = 50;
 
 /// The most messages of one hub that are sent before the next hub has its turn.
-const TURN: usize = 1024;
+const MAX_MESSAGES_PER_HUB: usize = 1024;
 
 /// The most bytes that are buffered before they are written.
-const CHUNK: usize = 64 << 10;
+const MAX_BUFFERED_BYTES: usize = 64 << 10;
 
 /// The topics that a tool watches.
 pub(super) struct TopicWatch {
@@ -134,12 +134,12 @@ impl TopicWatch {
         let mut lost: u64 = self.feeds.iter().map(|feed| feed.subscriber.lost()).sum();
         for feed in &mut self.feeds {
             lost -= feed.subscriber.lost();
-            for _ in 0..TURN {
+            for _ in 0..MAX_MESSAGES_PER_HUB {
                 // Losses before a message are detected when it is fetched.
                 let Some(sample) = feed.subscriber.next_sample() else { break };
                 let seen = feed.seen(&sample, run, self.payload, lost + feed.subscriber.lost());
                 frame::append(&Answer { seen: Some(seen), ..Answer::default() }, bytes);
-                if bytes.len() > CHUNK {
+                if bytes.len() > MAX_BUFFERED_BYTES {
                     stream.write_all(bytes)?;
                     bytes.clear();
                 }

@@ -31,10 +31,10 @@ const IDLE_CHECKS: usize = 100;
 
 /// A request of so many bytes may arrive in one more part. A tool that sends its request in smaller
 /// parts is disconnected, since it would hold its connection for as long as it likes.
-const PART: usize = 16 << 10;
+const MAX_FINAL_PART: usize = 16 << 10;
 
 /// Time without reading its replies after which a tool is disconnected.
-const SLOWEST: Duration = Duration::from_secs(2);
+const SEND_TIMEOUT: Duration = Duration::from_secs(2);
 
 /// The control socket of a run that does not exist yet: it holds the run's name. Tools that connect
 /// wait until it is served.
@@ -84,7 +84,7 @@ impl ControlSocket {
             let text = format!("`{name}` is not a name of a control socket: letters, digits, `_` and `-`");
             return Err(Error::new(ErrorKind::Settings, text));
         }
-        let path = folder.join(format!("{name}.{}", super::client::ENDING));
+        let path = folder.join(format!("{name}.{}", super::client::EXTENSION));
         let failed =
             |error: io::Error| Error::new(ErrorKind::Connection, format!("{}: {error}", path.display()));
         let _names = lock_names(folder)?;
@@ -192,7 +192,7 @@ struct ToolConnection {
 fn serve(mut stream: UnixStream, state: Arc<ServerState>) -> Option<ToolConnection> {
     stream.set_nonblocking(false).ok()?;
     stream.set_read_timeout(Some(CHECK_INTERVAL)).ok()?;
-    stream.set_write_timeout(Some(SLOWEST)).ok()?;
+    stream.set_write_timeout(Some(SEND_TIMEOUT)).ok()?;
     if !is_owner(&stream) {
         let _ = frame::write(&refused("this run belongs to another user"), &mut stream);
         return None;
@@ -255,7 +255,7 @@ impl Read for RequestReader<'_> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         loop {
             self.waits += 1;
-            if self.waits > IDLE_CHECKS + self.bytes / PART || self.stops.load(Ordering::SeqCst) {
+            if self.waits > IDLE_CHECKS + self.bytes / MAX_FINAL_PART || self.stops.load(Ordering::SeqCst) {
                 return Err(io::ErrorKind::TimedOut.into());
             }
             match self.stream.read(buffer) {

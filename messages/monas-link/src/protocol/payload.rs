@@ -8,7 +8,7 @@ use bytes::Bytes;
 use narukom::EncodedMessage;
 
 /// Shorter messages are copied, which costs less than keeping foreign memory alive.
-const SHORTEST: usize = 64 << 10;
+const MIN_SHARED_SIZE: usize = 64 << 10;
 
 /// The bytes of a message, shared by all holders.
 ///
@@ -35,7 +35,7 @@ impl MessageBytes {
     /// The encoding of a published message. A large one is not copied.
     pub(crate) fn of(encoded: EncodedMessage) -> MessageBytes {
         let bytes = match encoded.bytes() {
-            short if short.len() < SHORTEST => Bytes::copy_from_slice(short),
+            short if short.len() < MIN_SHARED_SIZE => Bytes::copy_from_slice(short),
             _ => Bytes::from_owner(encoded.into_shared()),
         };
         bytes.into()

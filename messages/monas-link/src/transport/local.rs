@@ -21,13 +21,13 @@ use crate::protocol::{Packet, wire};
 use crate::socket_folder::lock_names;
 
 /// Longest packet, in bytes, with its names. Longer ones need another transport.
-const LARGEST: usize = 128 << 10;
+const MAX_PACKET_SIZE: usize = 128 << 10;
 
 /// The part of it for names and framing.
-const FRAME: usize = 1 << 10;
+const FRAMING_SIZE: usize = 1 << 10;
 
 /// File extension of link sockets.
-const ENDING: &str = "link";
+const EXTENSION: &str = "link";
 
 /// Interval at which the receiving thread checks whether it should stop.
 const CHECK_INTERVAL: Duration = Duration::from_millis(100);
@@ -92,7 +92,7 @@ impl LocalTransport {
             let text = format!("`{name}` is not a name of a socket: letters, digits, `_` and `-`");
             return Err(Error::new(ErrorKind::Settings, text));
         }
-        let path = folder.join(format!("{name}.{ENDING}"));
+        let path = folder.join(format!("{name}.{EXTENSION}"));
         let failed =
             |error: io::Error| Error::new(ErrorKind::Connection, format!("{}: {error}", path.display()));
         let names = lock_names(folder)?;
@@ -131,7 +131,7 @@ impl LocalTransport {
         let entries = fs::read_dir(&self.folder).into_iter().flatten().flatten();
         let sockets = entries.map(|entry| entry.path());
         sockets
-            .filter(|path| path.extension().is_some_and(|end| end == ENDING) && *path != self.path)
+            .filter(|path| path.extension().is_some_and(|end| end == EXTENSION) && *path != self.path)
             .collect()
     }
 }
@@ -146,19 +146,20 @@ impl Transport for LocalTransport {
             payload: packet.payload.to_vec(),
             priority: packet.priority.into(),
         };
-        if datagram.encoded_len() > LARGEST {
-            let text = format!("{} bytes do not fit into a packet of {LARGEST}", datagram.encoded_len());
+        if datagram.encoded_len() > MAX_PACKET_SIZE {
+            let text =
+                format!("{} bytes do not fit into a packet of {MAX_PACKET_SIZE}", datagram.encoded_len());
             return Err(Error::new(ErrorKind::TooLarge, text));
         }
         datagram.encode_raw(&mut self.buffer);
         match &packet.to {
-            Some(name) => self.send_to(&self.folder.join(format!("{name}.{ENDING}"))),
+            Some(name) => self.send_to(&self.folder.join(format!("{name}.{EXTENSION}"))),
             None => self.others().iter().map(|path| self.send_to(path)).fold(Ok(()), Result::and),
         }
     }
 
     fn largest(&self) -> usize {
-        LARGEST - FRAME
+        MAX_PACKET_SIZE - FRAMING_SIZE
     }
 }
 
@@ -190,7 +191,7 @@ fn is_gone(error: &io::Error) -> bool {
 }
 
 fn listen(socket: &UnixDatagram, inbox: &PacketInbox, stops: &AtomicBool) {
-    let mut buffer = vec![0; LARGEST + 1];
+    let mut buffer = vec![0; MAX_PACKET_SIZE + 1];
     while !stops.load(Ordering::SeqCst) {
         let Ok(length) = socket.recv(&mut buffer) else { continue };
         inbox.put(read(&buffer[..length]));

@@ -31,7 +31,7 @@ use crate::protocol::{MessageBytes, Node, Packet};
 pub use config::{Tls, ZenohSettings};
 
 /// The part of a message for its key and framing.
-const FRAME: usize = 1 << 10;
+const FRAMING_SIZE: usize = 1 << 10;
 
 /// A zenoh session.
 pub struct Zenoh {
@@ -115,7 +115,7 @@ impl Transport for Zenoh {
     }
 
     fn largest(&self) -> usize {
-        self.largest.saturating_sub(FRAME)
+        self.largest.saturating_sub(FRAMING_SIZE)
     }
 }
 

@@ -34,7 +34,7 @@ topic! {
 }
 
 /// Timeout for what must arrive.
-const PATIENCE: Duration = Duration::from_secs(30);
+const TIMEOUT: Duration = Duration::from_secs(30);
 
 /// A free port of this computer.
 fn port() -> u16 {
@@ -142,7 +142,7 @@ fn program(settings: &ZenohSettings) -> Result<zenoh::Session, zenoh::Error> {
 
 /// Waits until `is_so`, and fails after the timeout.
 fn await_that(what: &str, mut is_so: impl FnMut() -> bool) {
-    let end = Instant::now() + PATIENCE;
+    let end = Instant::now() + TIMEOUT;
     while !is_so() {
         assert!(Instant::now() < end, "{what} did not come");
         thread::park_timeout(Duration::from_millis(5));

@@ -9,22 +9,22 @@ use monas_tape::{Recording, Tape, recover};
 use narukom::prost::Message as _;
 
 /// Environment variable with the path of the tape, for the process to be killed.
-const VICTIM: &str = "MONAS_TAPE_VICTIM";
+const TAPE_VARIABLE: &str = "MONAS_TAPE_VICTIM";
 /// The number of published balls after which the process reports.
-const SAID: u64 = 500;
+const REPORTED_AFTER: u64 = 500;
 
 /// In the process to be killed: records forever, and reports when so many messages have been
 /// flushed that they cannot be lost.
 #[test]
 fn victim() {
-    let Some(path) = std::env::var_os(VICTIM) else { return };
+    let Some(path) = std::env::var_os(TAPE_VARIABLE) else { return };
     let tape = Tape::create_real_time(Path::new(&path)).unwrap();
     let hub = hub("robot");
     hub.observe(Box::new(tape.clone()));
     let mut publisher = hub.publisher(SEEN, "vision").unwrap();
     for number in 1_u64.. {
         publisher.publish(Ball { distance: number as f64 }, at(number));
-        if number == SAID {
+        if number == REPORTED_AFTER {
             tape.flush().unwrap();
             println!("recorded");
         }
@@ -50,7 +50,7 @@ fn the_tape_of_a_killed_process_is_read_and_recovered() {
     let path = folder.path().join("killed.mcap");
     let mut child = Command::new(std::env::current_exe().unwrap())
         .args(["--exact", "killed::victim", "--nocapture"])
-        .env(VICTIM, &path)
+        .env(TAPE_VARIABLE, &path)
         .stdout(Stdio::piped())
         .spawn()
         .unwrap();
@@ -63,7 +63,7 @@ fn the_tape_of_a_killed_process_is_read_and_recovered() {
     let cut = Recording::open(&path).unwrap();
     assert!(!cut.is_finished());
     let before = counted(&cut);
-    assert!(before >= SAID, "{before}");
+    assert!(before >= REPORTED_AFTER, "{before}");
 
     let recovery = recover(&path, &path).unwrap();
     assert_eq!((recovery.was_finished, recovery.was_whole(), recovery.messages), (false, false, before));

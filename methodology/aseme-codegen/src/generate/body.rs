@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use yase::{ActionLocation, CompiledChart, NodeId, TransitionId};
 
-use super::code::{RustCode, WIDTH, quoted};
+use super::code::{MAX_LINE_LENGTH, RustCode, quoted};
 use super::name_table::NameTable;
 use super::names::identifier;
 
@@ -32,7 +32,7 @@ pub(crate) struct GeneratedFunctions {
 }
 
 /// The longest part of a path that is used in names of functions.
-const LONG: usize = 24;
+const MAX_NAME_PART: usize = 24;
 
 impl GeneratedFunctions {
     /// The function of a guard.
@@ -89,7 +89,7 @@ impl GeneratedFunctions {
         let name = self.name(format!("set_{wish}"));
         let parameters = [format!("message: &mut {}", body.rust), "value: Value<'_>".to_owned()];
         let line = format!("pub(crate) fn {name}({}) -> Result<(), CallError> {{", parameters.join(", "));
-        let head = match line.chars().count() <= WIDTH {
+        let head = match line.chars().count() <= MAX_LINE_LENGTH {
             true => line,
             false => format!(
                 "pub(crate) fn {name}(\n    {},\n) -> Result<(), CallError> {{",
@@ -121,7 +121,7 @@ impl GeneratedFunctions {
         }
         text += "\n#![allow(non_snake_case)] // the names are those of states\n\n";
         let functions = self.text.join("\n");
-        text += &super::chart::import(&glossary.words.runtime, &used(&functions, &RUNTIME));
+        text += &super::chart::import(&glossary.words.runtime, &used(&functions, &RUNTIME_NAMES));
         if functions.contains("State::") {
             text += "\nuse super::states::State;\n";
         }
@@ -136,7 +136,7 @@ impl GeneratedFunctions {
 }
 
 /// The names that functions use from the runtime, with the text that reveals the use.
-const RUNTIME: [(&str, &str); 25] = [
+const RUNTIME_NAMES: [(&str, &str); 25] = [
     ("CallError", "CallError"),
     ("Computed", "Computed<"),
     ("GuardInput", "GuardInput<"),
@@ -188,7 +188,7 @@ fn parameter(code: &RustCode) -> &'static str {
 fn short(chart: &CompiledChart, node: NodeId) -> Option<String> {
     let path = chart.short_path(node);
     let name = identifier(&[path.rsplit('/').next().unwrap_or_default()]);
-    (name.len() <= LONG && !name.contains("__")).then_some(name)
+    (name.len() <= MAX_NAME_PART && !name.contains("__")).then_some(name)
 }
 
 fn transition_description(chart: &CompiledChart, id: TransitionId) -> String {

@@ -5,7 +5,7 @@ use std::time::Duration;
 use yase::{ActionLocation, NodeId, Statechart, Transition, TransitionId};
 
 use super::body::GeneratedFunctions;
-use super::code::{RustCode, WIDTH, literal};
+use super::code::{MAX_LINE_LENGTH, RustCode, literal};
 use super::name_table::NameTable;
 use super::states::GeneratedStates;
 
@@ -104,12 +104,12 @@ pub(crate) fn import(module: &str, names: &[&str]) -> String {
         return format!("use {module}::{name};\n");
     }
     let line = format!("use {module}::{{{}}};\n", names.join(", "));
-    if line.chars().count() <= WIDTH + 1 {
+    if line.chars().count() <= MAX_LINE_LENGTH + 1 {
         return line;
     }
     let mut lines = vec![String::from("   ")];
     for name in names {
-        let is_full = lines.last().is_some_and(|line| line.len() + name.len() + 2 > WIDTH);
+        let is_full = lines.last().is_some_and(|line| line.len() + name.len() + 2 > MAX_LINE_LENGTH);
         if is_full {
             lines.push(String::from("   "));
         }

@@ -1,7 +1,7 @@
 //! Rust expressions, laid out as rustfmt does.
 
 /// The longest line.
-pub(crate) const WIDTH: usize = 110;
+pub(crate) const MAX_LINE_LENGTH: usize = 110;
 const INDENT: usize = 4;
 
 /// A Rust expression.
@@ -54,7 +54,7 @@ impl RustCode {
     /// characters after the last.
     pub(crate) fn laid_out(&self, indent: usize, column: usize, room: usize) -> String {
         let flat = self.flat();
-        if column + flat.chars().count() + room <= WIDTH {
+        if column + flat.chars().count() + room <= MAX_LINE_LENGTH {
             return flat;
         }
         match self {

@@ -22,14 +22,14 @@ const WORDS: [(&str, &str); 13] = [
 ];
 
 /// Separates the segments of a path; also a segment without characters.
-const OF: &str = "of";
+const SEPARATOR: &str = "of";
 const EMPTY: &str = "empty";
 
 /// The identifier of a path, whose segments are given from the innermost outwards. The mapping is
 /// injective; [`path_of`] inverts it.
 pub fn identifier(path: &[&str]) -> String {
     let segments: Vec<String> = path.iter().map(|segment| encoded(segment)).collect();
-    let text = segments.join(&format!("__{OF}__"));
+    let text = segments.join(&format!("__{SEPARATOR}__"));
     let starts_badly = text.starts_with(|first: char| first.is_ascii_digit());
     match text.chars().next() {
         Some(first) if starts_badly || KEYWORDS.contains(&text.as_str()) => {
@@ -48,7 +48,7 @@ pub fn path_of(identifier: &str) -> Option<Vec<String>> {
         let segment = path.last_mut()?;
         segment.push_str(&rest[..at]);
         match word {
-            OF => path.push(String::new()),
+            SEPARATOR => path.push(String::new()),
             EMPTY => {}
             word => segment.push_str(&decoded(word)?),
         }

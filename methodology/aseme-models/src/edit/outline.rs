@@ -11,7 +11,7 @@ use super::item_edit::{FormText, plain};
 use super::role_edit::RoleText;
 use super::{TextForm, form};
 use crate::document::{Reference, list, reference, settings};
-use crate::meta::{Class, Feature, FeatureKind, MANY, Metamodel};
+use crate::meta::{Class, Feature, FeatureKind, Metamodel, UNLIMITED};
 
 /// The editable parts of a model's text.
 #[derive(Clone, PartialEq, Eq, Debug)]
@@ -234,7 +234,7 @@ fn kind(metamodel: &Metamodel, feature: &Feature) -> FieldKind {
         FeatureKind::Formulas => FieldKind::Formulas,
         FeatureKind::Choice(choices) => FieldKind::Choice(choices.to_vec()),
         FeatureKind::Links { class, most, .. } => {
-            FieldKind::Links(metamodel.classes[class].word, most == MANY)
+            FieldKind::Links(metamodel.classes[class].word, most == UNLIMITED)
         }
         FeatureKind::Text | FeatureKind::Opposite { .. } => FieldKind::Text,
     }

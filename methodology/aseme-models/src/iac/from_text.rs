@@ -275,11 +275,11 @@ impl Reader {
     fn no_value(&mut self, key: &SpannedText, value: &SpannedText) {
         let message = format!("`{}` is not a value for `{}`", value.text, key.text);
         let hint = match key.text.as_str() {
-            "at" => layout::AT,
-            "size" => layout::SIZE,
+            "at" => layout::POSITION_FORM,
+            "size" => layout::SIZE_FORM,
             "priority" => "a whole number; higher runs first",
             "duration" => "a time such as `250ms` or `2s`",
-            _ => layout::VIA,
+            _ => layout::CORNERS_FORM,
         };
         self.report(Diagnostic::error("E0245", value.span, message).with_hint(hint));
     }

@@ -6,7 +6,7 @@ use yase::Diagnostic;
 use yase::diagnostic::Suggestions;
 use yase::expression::TextPosition;
 
-use super::{Class, Feature, FeatureKind, FeatureValue, MANY, Metamodel, ModelInstance, Object};
+use super::{Class, Feature, FeatureKind, FeatureValue, Metamodel, ModelInstance, Object, UNLIMITED};
 use crate::document::{Item, ItemDocument, KeyValue, Line, Reference, SpannedText, list, settings, unquoted};
 
 /// Parses a model from text; the findings are E0261 to E0269.
@@ -173,7 +173,7 @@ impl Reader<'_> {
             let message = format!("there can be {most} here, not {}", words.len());
             self.report(Diagnostic::error("E0269", value.span, message).with_hint("keep the first"));
         }
-        let most = if most == MANY { words.len() } else { most };
+        let most = if most == UNLIMITED { words.len() } else { most };
         words.iter().take(most).filter_map(|word| self.link(class, word)).collect()
     }
 

@@ -6,7 +6,7 @@ use roxmltree::{Attribute, Document, Node};
 use yase::expression::TextPosition;
 use yase::{Diagnostic, Span};
 
-use super::{Class, Feature, FeatureKind, FeatureValue, MANY, Metamodel, ModelInstance, Object};
+use super::{Class, Feature, FeatureKind, FeatureValue, Metamodel, ModelInstance, Object, UNLIMITED};
 use crate::xmi::{self, XSI, XmiPaths};
 
 /// Parses a model from XMI; the findings are E0801 to E0809.
@@ -163,7 +163,7 @@ impl Reader<'_> {
             let message = format!("there can be {most} here, not {}", links.len());
             self.report(Diagnostic::error("E0809", span, message));
         }
-        links.into_iter().take(if most == MANY { usize::MAX } else { most }).collect()
+        links.into_iter().take(if most == UNLIMITED { usize::MAX } else { most }).collect()
     }
 
     /// The object that a reference denotes.

@@ -11,14 +11,14 @@ use aseme::srm::{Section, SrmFile};
 use aseme::text;
 
 /// The sections that are transferred from one model to another, in this order.
-pub(crate) const CARRIED: [Section; 4] =
+pub(crate) const TRANSFERRED_SECTIONS: [Section; 4] =
     [Section::Constants, Section::Transitions, Section::States, Section::Layout];
 
 /// The entries of a role, each on one line, without comments.
 pub fn entries_of_role(file: &SrmFile) -> Vec<(Section, String)> {
     let blanked = text::without_comments(file.text());
     let of_section = |section: Section| file.entries().iter().filter(move |entry| entry.section == section);
-    let entries = CARRIED.into_iter().flat_map(of_section);
+    let entries = TRANSFERRED_SECTIONS.into_iter().flat_map(of_section);
     entries.map(|entry| (entry.section, text::one_line(&blanked[entry.span.start..entry.span.end]))).collect()
 }
 

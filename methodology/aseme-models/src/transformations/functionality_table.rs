@@ -45,7 +45,7 @@ fn row(srm: &SystemRoles, role: &str, capability: &str, activity: usize) -> Opti
 }
 
 /// The heads of the columns.
-const HEADS: [&str; 8] = [
+const COLUMN_HEADS: [&str; 8] = [
     "role",
     "capability",
     "activity",
@@ -64,15 +64,15 @@ impl FunctionalityTable {
         let rows: Vec<[String; 8]> = self.without_repetitions();
         let width = |column: usize| {
             let cells = rows.iter().map(|row| row[column].chars().count());
-            cells.chain([HEADS[column].len()]).max().unwrap_or(0)
+            cells.chain([COLUMN_HEADS[column].len()]).max().unwrap_or(0)
         };
-        let widths: Vec<usize> = (0..HEADS.len()).map(width).collect();
+        let widths: Vec<usize> = (0..COLUMN_HEADS.len()).map(width).collect();
         let line = |cells: &[String; 8]| {
             let cells = shown.iter().map(|&column| format!("{:1$}", cells[column], widths[column]));
             format!("{}\n", cells.collect::<Vec<_>>().join("  ").trim_end())
         };
         let rules = std::array::from_fn(|column| "-".repeat(widths[column]));
-        let head = [line(&HEADS.map(String::from)), line(&rules)].concat();
+        let head = [line(&COLUMN_HEADS.map(String::from)), line(&rules)].concat();
         head + &rows.iter().map(line).collect::<String>()
     }
 
@@ -80,7 +80,7 @@ impl FunctionalityTable {
     pub fn to_html(&self) -> String {
         let shown = self.shown();
         let mut html = String::from("<table>\n  <tr>");
-        shown.iter().for_each(|&column| html.extend(["<th>", HEADS[column], "</th>"]));
+        shown.iter().for_each(|&column| html.extend(["<th>", COLUMN_HEADS[column], "</th>"]));
         html.push_str("</tr>\n");
         for (index, row) in self.rows.iter().enumerate() {
             html.push_str("  <tr>");
@@ -102,14 +102,14 @@ impl FunctionalityTable {
     /// Comma-separated values according to RFC 4180, with all columns and cells filled.
     pub fn to_csv(&self) -> String {
         let line = |cells: [&str; 8]| format!("{}\r\n", cells.map(csv_cell).join(","));
-        line(HEADS) + &self.rows.iter().map(|row| line(row.cells())).collect::<String>()
+        line(COLUMN_HEADS) + &self.rows.iter().map(|row| line(row.cells())).collect::<String>()
     }
 
     /// The columns that are not empty, and always the first four.
     fn shown(&self) -> Vec<usize> {
         let is_used =
             |column: &usize| *column < 4 || self.rows.iter().any(|row| !row.cells()[*column].is_empty());
-        (0..HEADS.len()).filter(is_used).collect()
+        (0..COLUMN_HEADS.len()).filter(is_used).collect()
     }
 
     fn without_repetitions(&self) -> Vec<[String; 8]> {

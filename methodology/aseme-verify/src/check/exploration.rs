@@ -28,7 +28,7 @@ use crate::finding::Finding;
 use dead_by_design::DeadByDesign;
 
 /// The default number of activities that an agent's pool runs at once.
-const POOL: usize = 12;
+const DEFAULT_POOL_SIZE: usize = 12;
 
 /// Findings of the exploration and its extent, or none if the chart cannot be explored. `known`
 /// holds the findings of the other checks.
@@ -425,7 +425,7 @@ impl ExplorationCheck<'_> {
 
     /// M21: more activities at once than the pool runs.
     fn pool(&self, settings: &CheckSettings) -> Option<Finding> {
-        let size = settings.pool.unwrap_or(POOL);
+        let size = settings.pool.unwrap_or(DEFAULT_POOL_SIZE);
         let state = self.found.first(|state| state.is_exact && state.running.len() > size)?;
         let most = self.found.states().iter().map(|state| state.running.len()).max()?;
         let message = format!("up to {most} activities run at once, and the pool runs {size}");

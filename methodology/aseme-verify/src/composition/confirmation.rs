@@ -4,7 +4,7 @@ use yase::expression::Path;
 use yase_explore::TraceStep;
 
 use super::composed_robot::{Behaviour, ComposedRobot};
-use super::content_table::MISSING;
+use super::content_table::NEVER_SENT;
 use super::product::{GlobalEvent, GlobalProduct, MessageRoute};
 use crate::check_settings::CheckSettings;
 use crate::conformance::graph::LabelledEdge;
@@ -53,7 +53,7 @@ fn replayed(
     for (number, route) in routes_to(product, robot) {
         if is_only_route(product, robot, number) {
             for prefix in prefixes(own, route) {
-                steps.replay.assume(&product.contents.facts_of(&prefix, MISSING));
+                steps.replay.assume(&product.contents.facts_of(&prefix, NEVER_SENT));
             }
         }
     }

@@ -11,7 +11,7 @@ use super::product::MessageRoute;
 use crate::logic::{Claim, GuardSolver};
 
 /// The content of a message that was never sent.
-pub(crate) const MISSING: u32 = 0;
+pub(crate) const NEVER_SENT: u32 = 0;
 
 /// The fields of a message: the text of a value, or `None` if it is unknown.
 type KnownFields = BTreeMap<String, Option<String>>;
@@ -30,7 +30,7 @@ pub(crate) struct ContentTable<'a> {
 
 impl<'a> ContentTable<'a> {
     pub(crate) fn new(robots: &'a [ComposedRobot], passages: &'a [MessageRoute]) -> ContentTable<'a> {
-        // index 0 is MISSING
+        // index 0 is NEVER_SENT
         let list = vec![KnownFields::new()];
         ContentTable { robots, passages, list, numbers: BTreeMap::new(), known: BTreeMap::new() }
     }
@@ -103,7 +103,7 @@ impl<'a> ContentTable<'a> {
     }
 
     fn add_facts(&self, prefix: &Path, content: u32, facts: &mut Vec<Expression>) {
-        if content == MISSING {
+        if content == NEVER_SENT {
             return facts.push(expression_of(ExpressionKind::Absent(prefix.clone())));
         }
         facts.push(expression_of(ExpressionKind::Present(prefix.clone())));

@@ -5,7 +5,7 @@ use crate::conformance::graph::LabelledEdge;
 
 /// The number of further states of a deadlock that are tried if the path to the first is not
 /// confirmed.
-const OTHERS: usize = 32;
+const MAX_FURTHER_STATES: usize = 32;
 
 /// States in which some robots wait forever.
 pub(crate) struct Deadlock {
@@ -42,7 +42,7 @@ pub(crate) fn deadlocks(product: &GlobalProduct<'_>) -> Vec<Deadlock> {
         (0..waits.len()).filter(|&it| is_stuck(it, state)).for_each(|number| reported[number] = true);
         let also = (0..product.states.len())
             .filter(|&it| it != worst && stuck.iter().all(|&number| is_stuck(number, it)));
-        let states = std::iter::once(worst).chain(also.take(OTHERS)).collect();
+        let states = std::iter::once(worst).chain(also.take(MAX_FURTHER_STATES)).collect();
         found.push(Deadlock { states, waits: stuck.into_iter().map(|it| waits[it]).collect() });
     }
     found

@@ -8,7 +8,7 @@ use yase_explore::{ExplorationProgress, StepCause, Trace};
 
 use super::Channels;
 use super::composed_robot::{Behaviour, ComposedRobot, FieldSetting};
-use super::content_table::{ContentTable, MISSING};
+use super::content_table::{ContentTable, NEVER_SENT};
 use crate::check_settings::CheckSettings;
 use crate::conformance::graph::{LabelledEdge, Observable};
 
@@ -153,8 +153,8 @@ impl<'a> CompositionSearch<'a> {
         let channels = passages.iter().map(|passage| passage.channel + 1).max().unwrap_or(0);
         let begin = GlobalState {
             classes: robots.iter().map(Behaviour::begin).collect(),
-            newest: vec![MISSING; passages.len()],
-            last_sent: vec![MISSING; passages.len()],
+            newest: vec![NEVER_SENT; passages.len()],
+            last_sent: vec![NEVER_SENT; passages.len()],
             channels: vec![Vec::new(); channels],
         };
         self.number(begin, None);

@@ -49,7 +49,7 @@ enum LanguageTerm {
 }
 
 /// Limit of distinct residuals.
-const MOST: usize = 50_000;
+const MAX_RESIDUALS: usize = 50_000;
 
 /// The residuals of the formulas of a role.
 pub(crate) struct Language {
@@ -106,7 +106,7 @@ impl Language {
         id: TermId,
         open: &mut Vec<usize>,
     ) -> Option<Residual> {
-        if open.len() > aseme::liveness::MAX_LEVELS || self.expressions.len() > MOST {
+        if open.len() > aseme::liveness::MAX_LEVELS || self.expressions.len() > MAX_RESIDUALS {
             return None;
         }
         match liveness.term(id) {
@@ -213,7 +213,7 @@ impl Language {
 
     /// Whether the limit of residuals is reached.
     pub(crate) fn is_too_large(&self) -> bool {
-        self.expressions.len() > MOST
+        self.expressions.len() > MAX_RESIDUALS
     }
 
     fn empty_residual(&mut self) -> Residual {

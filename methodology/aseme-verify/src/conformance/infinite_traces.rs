@@ -12,7 +12,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::graph::{Graph, Observable};
-use super::{MOST, ProductState};
+use super::{MAX_PAIRS, ProductState};
 use crate::conformance::derivatives::{Language, LoopId, Residual};
 use crate::strongly_connected_components::strongly_connected_components;
 
@@ -78,7 +78,7 @@ impl LoopProduct {
             product.number((state, all));
         }
         while let Some(&(state, rest)) = product.places.get(product.next.len()) {
-            if product.places.len() > MOST || language.is_too_large() {
+            if product.places.len() > MAX_PAIRS || language.is_too_large() {
                 return None;
             }
             let mut steps = Vec::new();

@@ -9,11 +9,11 @@ struct NumericBound {
     strict: bool,
 }
 
-const NONE: NumericBound = NumericBound { limit: f64::INFINITY, strict: true };
-const SAME: NumericBound = NumericBound { limit: 0.0, strict: false };
+const UNBOUNDED: NumericBound = NumericBound { limit: f64::INFINITY, strict: true };
+const EQUAL: NumericBound = NumericBound { limit: 0.0, strict: false };
 
 /// Sums of limits that differ by less than this may be equal up to rounding.
-const ROUNDING: f64 = 1e-9;
+const ROUNDING_TOLERANCE: f64 = 1e-9;
 
 impl NumericBound {
     fn plus(self, other: NumericBound) -> NumericBound {
@@ -27,7 +27,7 @@ impl NumericBound {
     /// Whether values exist between this bound on a difference and the opposite one.
     fn is_consistent_with(self, opposite: NumericBound) -> BoundsConsistency {
         let around = self.plus(opposite);
-        let rounding = ROUNDING * (1.0 + self.limit.abs());
+        let rounding = ROUNDING_TOLERANCE * (1.0 + self.limit.abs());
         if around.limit < 0.0 || around.limit == 0.0 && around.strict {
             let exact = around.limit == 0.0 || around.limit < -rounding;
             return if exact { BoundsConsistency::Contradiction } else { BoundsConsistency::TooClose };
@@ -90,7 +90,7 @@ impl DifferenceBounds {
         let bound = NumericBound { limit, strict };
         let [more, less] = [more, less].map(|name| name.map(|name| self.position(name)));
         let (group, i, j) = match (more, less) {
-            (None, None) => return bound.is_consistent_with(SAME),
+            (None, None) => return bound.is_consistent_with(EQUAL),
             (Some(more), None) => (more.group, more.index, 0),
             (None, Some(less)) => (less.group, 0, less.index),
             (Some(more), Some(less)) if more.group == less.group => (more.group, more.index, less.index),
@@ -143,7 +143,7 @@ struct BoundMatrix {
 impl BoundMatrix {
     /// A matrix of variables without bounds.
     fn new(size: usize) -> BoundMatrix {
-        let bound = |index: usize| if index.is_multiple_of(size + 1) { SAME } else { NONE };
+        let bound = |index: usize| if index.is_multiple_of(size + 1) { EQUAL } else { UNBOUNDED };
         BoundMatrix { size, bounds: (0..size * size).map(bound).collect() }
     }
 

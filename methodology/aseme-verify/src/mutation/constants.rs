@@ -10,13 +10,13 @@ use super::{MutantCollector, MutantDescription, MutationKind};
 use aseme::srm::{Section, SrmFile};
 
 /// The step relative to a number: a tenth.
-const SHARE: f64 = 0.1;
+const RELATIVE_STEP: f64 = 0.1;
 /// The significant digits of a step.
 const DIGITS: usize = 12;
 
 /// A number a tenth larger and a tenth smaller; for zero, plus and minus one.
 pub(crate) fn around(value: f64) -> [f64; 2] {
-    let step = if value == 0.0 { 1.0 } else { value.abs() * SHARE };
+    let step = if value == 0.0 { 1.0 } else { value.abs() * RELATIVE_STEP };
     [value + step, value - step].map(rounded)
 }
 

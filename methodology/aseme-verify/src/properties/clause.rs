@@ -9,12 +9,12 @@
 //! their deadlines, and one implies the other: the earlier for `until`, the later for its negation.
 //! So a clause has a fixed size, and a step allocates no memory beyond that of the [`Scratch`].
 
-use super::compiled_property::{BOUNDED, CompiledProperty, Subformula};
+use super::compiled_property::{CompiledProperty, MAX_BOUNDED_TERMS, Subformula};
 
 /// Limit of clauses kept between steps.
-pub(crate) const CLAUSES: usize = 64;
+pub(crate) const MAX_CLAUSES: usize = 64;
 /// Limit of clauses during a step.
-const ROOM: usize = 1_024;
+const MAX_CLAUSES_IN_STEP: usize = 1_024;
 
 /// Obligations that must all be met.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
@@ -22,12 +22,12 @@ pub(crate) struct Clause {
     /// A bit for each obligation.
     pub(crate) obligations: u32,
     /// The deadlines of bounded obligations; 0 for absent ones.
-    pub(crate) deadlines: [u64; BOUNDED],
+    pub(crate) deadlines: [u64; MAX_BOUNDED_TERMS],
 }
 
 impl Clause {
     /// The clause without obligations.
-    pub(crate) const TRUE: Clause = Clause { obligations: 0, deadlines: [0; BOUNDED] };
+    pub(crate) const TRUE: Clause = Clause { obligations: 0, deadlines: [0; MAX_BOUNDED_TERMS] };
 
     pub(crate) fn is_true(&self) -> bool {
         self.obligations == 0
@@ -138,7 +138,7 @@ pub(crate) struct Scratch {
 
 impl Scratch {
     pub(crate) fn new() -> Scratch {
-        Scratch { clauses: Vec::with_capacity(ROOM) }
+        Scratch { clauses: Vec::with_capacity(MAX_CLAUSES_IN_STEP) }
     }
 
     /// The clauses that the last step left; none implies another.
@@ -268,7 +268,7 @@ impl Scratch {
     }
 
     fn push(&mut self, clause: Clause) -> Result<(), Overflow> {
-        if self.clauses.len() == ROOM {
+        if self.clauses.len() == MAX_CLAUSES_IN_STEP {
             return Err(Overflow);
         }
         self.clauses.push(clause);

@@ -8,11 +8,11 @@ use yase::expression::{EventId, Expression};
 use super::syntax::{PropertyFormula, PropertyFormulaKind};
 
 /// Letters have a bit for each atom.
-pub(crate) const ATOMS: usize = 64;
+pub(crate) const MAX_ATOMS: usize = 64;
 /// A clause has a bit for each temporal term.
-pub(crate) const TEMPORAL: usize = 32;
+pub(crate) const MAX_TEMPORAL_TERMS: usize = 32;
 /// A clause has a deadline for each of these.
-pub(crate) const BOUNDED: usize = 8;
+pub(crate) const MAX_BOUNDED_TERMS: usize = 8;
 
 /// A proposition about one step.
 #[derive(Clone, PartialEq, Debug)]
@@ -172,8 +172,8 @@ impl<F: FnMut(&PropertyFormula) -> Option<AtomicProposition>> Lowering<F> {
         let known = self.plan.atoms.iter().position(|other| *other == atom);
         let atom = match known {
             Some(place) => place,
-            None if self.plan.atoms.len() == ATOMS => {
-                return Err(TooLarge("different things about states, events and messages", ATOMS));
+            None if self.plan.atoms.len() == MAX_ATOMS => {
+                return Err(TooLarge("different things about states, events and messages", MAX_ATOMS));
             }
             None => {
                 self.plan.atoms.push(atom);
@@ -207,14 +207,14 @@ impl<F: FnMut(&PropertyFormula) -> Option<AtomicProposition>> Lowering<F> {
         is_until: bool,
     ) -> Result<usize, TooLarge> {
         let obligation = self.plan.obligations.len();
-        if obligation == TEMPORAL {
-            return Err(TooLarge("`always`, `eventually` and `until`", TEMPORAL));
+        if obligation == MAX_TEMPORAL_TERMS {
+            return Err(TooLarge("`always`, `eventually` and `until`", MAX_TEMPORAL_TERMS));
         }
         let bound = bound.map(|bound| u64::try_from(bound.as_nanos()).unwrap_or(u64::MAX));
         let deadline = bound.map(|_| self.bounded);
         self.bounded += usize::from(bound.is_some());
-        if self.bounded > BOUNDED {
-            return Err(TooLarge("`within`", BOUNDED));
+        if self.bounded > MAX_BOUNDED_TERMS {
+            return Err(TooLarge("`within`", MAX_BOUNDED_TERMS));
         }
         let term = match is_until {
             true => Subformula::Until { obligation, left, right, bound },

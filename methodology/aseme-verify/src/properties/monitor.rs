@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::clause::{CLAUSES, Clause, Overflow, Scratch, TimedLetter};
+use super::clause::{Clause, MAX_CLAUSES, Overflow, Scratch, TimedLetter};
 use super::compiled_property::CompiledProperty;
 
 /// The verdict on a property after a prefix of a run.
@@ -54,7 +54,7 @@ pub struct Monitor {
 impl Monitor {
     /// A monitor before the first step.
     pub fn new(plan: Arc<CompiledProperty>) -> Monitor {
-        let clauses = Vec::with_capacity(CLAUSES);
+        let clauses = Vec::with_capacity(MAX_CLAUSES);
         Monitor { plan, clauses, stack: Scratch::new(), has_begun: false, verdict: MonitorVerdict::Awaited }
     }
 
@@ -89,7 +89,7 @@ impl Monitor {
     }
 
     fn taken(&mut self, stepped: Result<(), Overflow>) -> MonitorVerdict {
-        if stepped.is_err() || self.stack.clauses().len() > CLAUSES {
+        if stepped.is_err() || self.stack.clauses().len() > MAX_CLAUSES {
             return MonitorVerdict::Lost;
         }
         self.clauses.clear();

@@ -11,10 +11,10 @@ use super::lexer::{PropertyTokenKind, Token, is_keyword, keywords, tokens};
 use super::syntax::{Property, PropertyFormula, PropertyFormulaKind};
 
 /// Limit of nesting.
-const DEEPEST: usize = 64;
+const MAX_DEPTH: usize = 64;
 
 /// The longest bound, in milliseconds: a day.
-const LONGEST: u64 = 86_400_000;
+const MAX_BOUND: u64 = 86_400_000;
 
 /// Parses a file of properties; the findings are E0840 to E0844, E0847 and those of
 /// [conditions](yase::expression).
@@ -332,8 +332,8 @@ impl Parser<'_> {
     }
 
     fn deeper<T>(&mut self, parse: impl FnOnce(&mut Self) -> Parsed<T>) -> Parsed<T> {
-        if self.depth == DEEPEST {
-            let message = format!("formulas nest at most {DEEPEST} levels deep");
+        if self.depth == MAX_DEPTH {
+            let message = format!("formulas nest at most {MAX_DEPTH} levels deep");
             return self.refuse("E0844", self.span(), message, "split it into several properties");
         }
         self.depth += 1;
@@ -415,7 +415,7 @@ fn milliseconds(digits: &str, unit: &str) -> Option<u64> {
     let scale = 10_u64.pow(fraction.len() as u32);
     let parts = fraction.parse::<u64>().ok()?.checked_mul(factor)?;
     let bound = whole.parse::<u64>().ok()?.checked_mul(factor)?.checked_add(parts / scale)?;
-    (parts % scale == 0 && (1..=LONGEST).contains(&bound)).then_some(bound)
+    (parts % scale == 0 && (1..=MAX_BOUND).contains(&bound)).then_some(bound)
 }
 
 /// The first part of a condition that does not depend on messages.

@@ -37,7 +37,7 @@ pub(crate) enum SearchOutcome {
 }
 
 /// The number of runs that are tried.
-const TRIED: usize = 256;
+const MAX_RUNS: usize = 256;
 
 /// Confirms that a run of the graph is one of the chart, or says why it is not known to be.
 pub(crate) type Confirmation<'c> = dyn FnMut(&Violation) -> Result<(), Unconfirmed> + 'c;
@@ -91,7 +91,7 @@ impl Candidates<'_, '_> {
     fn confirmed(&mut self, run: Violation, alternatives: &[Vec<usize>]) -> Option<Violation> {
         let mut chosen = vec![0; alternatives.len()];
         let mut candidate = run.clone();
-        while self.tried < TRIED {
+        while self.tried < MAX_RUNS {
             self.tried += 1;
             let Err(unconfirmed) = (self.confirm)(&candidate) else { return Some(candidate) };
             self.first.get_or_insert_with(|| (run.clone(), unconfirmed.reason));

@@ -10,7 +10,7 @@ use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use yase::NodeId;
 use yase_explore::{LabelledGraph, StepCause, StepLabeler, StepObservation, explore_labelled};
 
-use super::{Conformance, STATES};
+use super::{Conformance, MAX_STATES};
 use crate::abstraction::Abstraction;
 use crate::checked_model;
 use crate::cone_of_influence;
@@ -123,7 +123,7 @@ impl ProtocolAlphabet {
                 letter << DONE | bit(seen.entered, ENTERS) | bit(seen.left, LEAVES)
             }),
         };
-        explore_labelled(&abstraction.chart, &mut surroundings, &mut asked, STATES)
+        explore_labelled(&abstraction.chart, &mut surroundings, &mut asked, MAX_STATES)
     }
 
     /// The symbol of the activity that a step completed.
@@ -172,7 +172,7 @@ fn first_beyond(found: &LabelledGraph, mut language: Language, all: Residual) ->
         }
     }
     while let Some((state, rests)) = open.pop_front() {
-        if language.is_too_large() || seen.len() > STATES * 4 {
+        if language.is_too_large() || seen.len() > MAX_STATES * 4 {
             return TraceInclusion::TooMuch;
         }
         for step in from[state].iter().map(|&number| &found.steps()[number]) {

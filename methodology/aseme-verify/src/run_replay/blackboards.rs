@@ -12,7 +12,7 @@ use yase::{Activation, ActiveStates, Host, ScopeId, ScriptContext};
 use crate::abstraction::{Abstraction, Assignment, may_be_one_message, same_message};
 
 /// Stands between the number and the name of what is read.
-const NUMBERED: char = '\'';
+const NUMBER_SEPARATOR: char = '\'';
 
 /// The origins of a run's messages.
 pub(crate) struct MessageSources<'a> {
@@ -406,7 +406,7 @@ fn message_of(field: &Path) -> Path {
 fn numbered(path: &Path, number: &str) -> Path {
     let mut path = path.clone();
     if let Some(first) = path.segments.first_mut() {
-        first.text = format!("{number}{NUMBERED}{}", first.text);
+        first.text = format!("{number}{NUMBER_SEPARATOR}{}", first.text);
     }
     path
 }
@@ -415,7 +415,7 @@ fn numbered(path: &Path, number: &str) -> Path {
 fn unnumbered(path: &Path) -> Path {
     let mut path = path.clone();
     if let Some(first) = path.segments.first_mut()
-        && let Some((_, name)) = first.text.split_once(NUMBERED)
+        && let Some((_, name)) = first.text.split_once(NUMBER_SEPARATOR)
     {
         first.text = name.to_owned();
     }

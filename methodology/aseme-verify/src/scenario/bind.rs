@@ -18,7 +18,7 @@ use aseme::srm::duration;
 use aseme::text;
 
 /// The hint for an unknown stimulus.
-const CAUSES: &str = "a step is `start`, `messages`, `event NAME`, `return STATE`, `ongoing STATE`, `fail STATE`, `wait 100ms` or `timer NAME`";
+const STIMULUS_FORMS: &str = "a step is `start`, `messages`, `event NAME`, `return STATE`, `ongoing STATE`, `fail STATE`, `wait 100ms` or `timer NAME`";
 
 type BindResult<T> = Result<T, Vec<Diagnostic>>;
 
@@ -128,7 +128,7 @@ impl ScenarioBinder<'_> {
             ("timer", false) => self.timer(rest).map(StepStimulus::Timer),
             _ => {
                 let message = format!("`{}` is not a step", self.text(span));
-                Err(Diagnostic::error("E0890", span, message).with_hint(CAUSES))
+                Err(Diagnostic::error("E0890", span, message).with_hint(STIMULUS_FORMS))
             }
         }
     }

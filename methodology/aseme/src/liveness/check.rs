@@ -8,7 +8,7 @@ use yase::{Diagnostic, Span};
 use super::{Formula, Liveness};
 
 /// The number of names that are compared to suggest what an unreachable formula may be for.
-const COMPARISONS: usize = 1_000_000;
+const MAX_COMPARISONS: usize = 1_000_000;
 
 /// Shorter names than this resemble each other by chance.
 const SHORTEST_MISSPELT: usize = 4;
@@ -130,7 +130,7 @@ fn misspelt(
             names.entry(name).or_insert(span);
         }
     }
-    let unreached = unreached(liveness, by_name, reached).take(COMPARISONS / names.len().max(1));
+    let unreached = unreached(liveness, by_name, reached).take(MAX_COMPARISONS / names.len().max(1));
     unreached
         .filter(|(_, formula)| formula.name.len() >= SHORTEST_MISSPELT)
         .filter_map(|(index, formula)| {
@@ -146,7 +146,7 @@ fn misspelt(
 fn unused(liveness: &Liveness, by_name: &BTreeMap<&str, usize>, reached: &[bool]) -> Vec<Diagnostic> {
     let used = liveness.formulas().iter().flat_map(|formula| liveness.names(formula)).map(|(name, _)| name);
     let activities: BTreeSet<&str> = used.filter(|name| !by_name.contains_key(name)).collect();
-    let compared = COMPARISONS / activities.len().max(1);
+    let compared = MAX_COMPARISONS / activities.len().max(1);
     let root = liveness.formulas().first().map_or("", |formula| formula.name.as_str());
     unreached(liveness, by_name, reached)
         .enumerate()

@@ -5,7 +5,7 @@ use yase::{Diagnostic, Span};
 
 use super::entries::{entry_spans, modifiers_start};
 use super::{LayoutEntry, LayoutTarget, Reader, Section, SrmEntry};
-use crate::layout::{self, AT, BENDS_KEY, FRAME_KEYS, SIZE, VIA};
+use crate::layout::{self, BENDS_KEY, CORNERS_FORM, FRAME_KEYS, POSITION_FORM, SIZE_FORM};
 use crate::text;
 
 impl Reader {
@@ -104,17 +104,17 @@ impl Reader {
             }
             "at" => {
                 said.frame.at = layout::place(text);
-                (said.frame.at.is_some(), AT)
+                (said.frame.at.is_some(), POSITION_FORM)
             }
             "size" => {
                 said.frame.size = layout::size(text);
-                (said.frame.size.is_some(), SIZE)
+                (said.frame.size.is_some(), SIZE_FORM)
             }
             _ => {
                 let bends = layout::bends(text);
                 let understood = bends.is_some();
                 said.bends = bends.unwrap_or_default();
-                (understood, VIA)
+                (understood, CORNERS_FORM)
             }
         };
         if !understood {

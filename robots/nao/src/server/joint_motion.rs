@@ -20,7 +20,7 @@ const KICK_BACK: f64 = 0.05;
 /// Knees that are bent more than this are folded, rad.
 const FOLDED_KNEE: f64 = 1.7;
 /// Slower than this the body stands, m/s and rad/s: packets have 32 bit floats.
-const STILL: f64 = 2e-3;
+const MIN_SPEED: f64 = 2e-3;
 /// Feet whose heights differ by less are both on the ground, m.
 const SAME_HEIGHT: f64 = 2e-3;
 
@@ -81,7 +81,7 @@ impl JointMotion {
             _ => Some(Side::Right),
         };
         let velocity = displacement(before, now).map(|way| way / CYCLE_SECONDS);
-        let is_still = velocity.iter().all(|part| part.abs() < STILL);
+        let is_still = velocity.iter().all(|part| part.abs() < MIN_SPEED);
         let [walk_x, walk_y, walk_turn] = if is_still || observed.is_some() { [0.0; 3] } else { velocity };
         Actuators {
             walk_x,

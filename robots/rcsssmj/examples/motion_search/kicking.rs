@@ -19,7 +19,7 @@ pub(crate) struct Kicking {
 }
 
 /// The start of the search for the T1: the result of an earlier search for one foot, rounded.
-const SEARCHED: &[Searched] = &[
+const SEARCHED_PARAMETERS: &[Searched] = &[
     ("ball_x", 0.21, 0.014),
     ("ball_y", 0.1, 0.0105),
     ("height", 0.52, 0.0105),
@@ -76,28 +76,29 @@ const K1_BEGIN: &[(&str, f64)] = &[
 ];
 
 /// The values that are not searched.
-const FIXED: [(&str, f64); 4] = [("still", 1.2), ("blending", 0.4), ("stiffness", 200.0), ("damping", 5.0)];
+const FIXED_PARAMETERS: [(&str, f64); 4] =
+    [("still", 1.2), ("blending", 0.4), ("stiffness", 200.0), ("damping", 5.0)];
 
 /// Kicks that are tried of each kick.
 const KICKS: usize = 6;
 /// By how much the place of the ball differs from that of the kick, m.
-const SPREAD: f64 = 0.03;
+const POSITION_SPREAD: f64 = 0.03;
 /// How long the robot stands before a kick, to twice that, s; after it the robot walks a little.
-const STANDING: f64 = 1.0;
-const ROLLING: f64 = 3.0;
-const WALKING: f64 = 2.0;
+const STANDING_TIME: f64 = 1.0;
+const ROLLING_TIME: f64 = 3.0;
+const WALKING_TIME: f64 = 2.0;
 /// The longest kick, s.
-const LONGEST: f64 = 8.0;
+const MAX_KICK_TIME: f64 = 8.0;
 /// A torso with a smaller cosine of its inclination has fallen.
-const UPRIGHT: f64 = 0.54;
+const MIN_UPRIGHT_COSINE: f64 = 0.54;
 /// The distance at which a kick costs nothing, m.
-const FAR: f64 = 6.0;
+const FREE_DISTANCE: f64 = 6.0;
 /// The cost of a fall, m.
-const FALL: f64 = 6.0;
+const FALL_COST: f64 = 6.0;
 /// The cost of a metre to the side.
-const ASIDE: f64 = 1.0;
+const LATERAL_COST: f64 = 1.0;
 /// The cost of the greatest inclination, by 1 minus its cosine.
-const INCLINATION: f64 = 10.0;
+const INCLINATION_COST: f64 = 10.0;
 
 impl Motion for Kicking {
     fn searched(&self) -> &[Searched] {
@@ -110,9 +111,10 @@ impl Motion for Kicking {
         for trial in 0..KICKS {
             // The feet differ: the masses of the legs do.
             let (foot, side) = if trial % 2 == 0 { (Foot::Left, 1.0) } else { (Foot::Right, -1.0) };
-            let mut spread = || SPREAD * (2.0 * f64::from(chance.next_u32()) / f64::from(u32::MAX) - 1.0);
+            let mut spread =
+                || POSITION_SPREAD * (2.0 * f64::from(chance.next_u32()) / f64::from(u32::MAX) - 1.0);
             let ball = [self.robot.hips().x + kick.ball_x + spread(), side * (kick.ball_y + spread())];
-            let standing = STANDING + STANDING * f64::from(chance.next_u32()) / f64::from(u32::MAX);
+            let standing = STANDING_TIME + STANDING_TIME * f64::from(chance.next_u32()) / f64::from(u32::MAX);
             cost += self.trial_cost(&mut Kick::new(self.robot, kick, foot), ball, standing, world)?;
         }
         Ok(cost / KICKS as f64)
@@ -127,7 +129,7 @@ impl Kicking {
     /// The kick of a robot, from the stand of its walk.
     pub(crate) fn of(robot: &'static Humanoid, walk: SineParameters) -> Kicking {
         let elsewhere: &[_] = if *robot == K1 { K1_BEGIN } else { &[] };
-        Kicking { robot, walk: SineWalk::new(robot, walk), searched: begin(SEARCHED, elsewhere) }
+        Kicking { robot, walk: SineWalk::new(robot, walk), searched: begin(SEARCHED_PARAMETERS, elsewhere) }
     }
 
     fn trial_cost(
@@ -142,8 +144,8 @@ impl Kicking {
         let mut state = world.reset(ball)?;
         let cycles = |seconds: f64| (seconds / CYCLE) as usize;
         let (mut inclination, mut after) = (0.0_f64, None);
-        for cycle in 0..cycles(standing + LONGEST + ROLLING) {
-            let walks = after.is_some_and(|since| cycle > since + cycles(ROLLING - WALKING));
+        for cycle in 0..cycles(standing + MAX_KICK_TIME + ROLLING_TIME) {
+            let walks = after.is_some_and(|since| cycle > since + cycles(ROLLING_TIME - WALKING_TIME));
             let velocity = WalkVelocity { x: if walks { -0.1 } else { 0.0 }, ..WalkVelocity::default() };
             walk.advance(velocity, &state.motion, &mut motors);
             if cycle > cycles(standing) && after.is_none() && !kick.advance(&state.motion, &mut motors) {
@@ -152,22 +154,24 @@ impl Kicking {
             state = world.cycle(&motors)?;
             inclination = inclination.max(1.0 - state.upright);
             let moved = [state.ball[0] - ball[0], state.ball[1] - ball[1]];
-            if state.upright < UPRIGHT {
-                return Ok(FALL + FAR - moved[0].clamp(0.0, FAR));
+            if state.upright < MIN_UPRIGHT_COSINE {
+                return Ok(FALL_COST + FREE_DISTANCE - moved[0].clamp(0.0, FREE_DISTANCE));
             }
-            if after.is_some_and(|since| cycle > since + cycles(ROLLING)) {
+            if after.is_some_and(|since| cycle > since + cycles(ROLLING_TIME)) {
                 break;
             }
         }
         let moved = [state.ball[0] - ball[0], state.ball[1] - ball[1]];
-        Ok(FAR - moved[0].clamp(-1.0, FAR) + ASIDE * moved[1].abs() + INCLINATION * inclination)
+        Ok(FREE_DISTANCE - moved[0].clamp(-1.0, FREE_DISTANCE)
+            + LATERAL_COST * moved[1].abs()
+            + INCLINATION_COST * inclination)
     }
 }
 
 fn parameters(values: &[f64]) -> KickParameters {
     let mut kick = KickParameters::default();
-    let searched = SEARCHED.iter().map(|(name, ..)| *name).zip(values.iter().copied());
-    for (name, value) in searched.chain(FIXED) {
+    let searched = SEARCHED_PARAMETERS.iter().map(|(name, ..)| *name).zip(values.iter().copied());
+    for (name, value) in searched.chain(FIXED_PARAMETERS) {
         kick.set(name, value);
     }
     kick

@@ -19,7 +19,7 @@ pub(crate) struct Walking {
 }
 
 /// The start of the search for the T1: the result of an earlier search, rounded.
-const SEARCHED: &[Searched] = &[
+const SEARCHED_PARAMETERS: &[Searched] = &[
     ("frequency", 1.9, 0.12),
     ("height", 0.45, 0.009),
     ("foot", 0.02, 0.009),
@@ -88,11 +88,11 @@ const K1_BEGIN: &[(&str, f64)] = &[
 ];
 
 /// The greatest speed ahead, m/s, of a T1 and of a K1.
-const FAST: f64 = 0.8;
+const MAX_SPEED: f64 = 0.8;
 const K1_FAST: f64 = 0.5;
 
 /// Values that are not searched, besides the greatest speed ahead and the gains of the motors.
-const FIXED: [(&str, f64); 3] = [("backwards", 0.2), ("sideways", 0.2), ("turning", 0.8)];
+const FIXED_PARAMETERS: [(&str, f64); 3] = [("backwards", 0.2), ("sideways", 0.2), ("turning", 0.8)];
 
 /// Seconds, and the velocities in them: ahead, at most the greatest, to the left, and of turning.
 type Part = (f64, [f64; 3]);
@@ -101,7 +101,7 @@ const TRIALS: [&[Part]; 3] = [
     &[
         (3.0, [0.3, 0.0, 0.0]),
         (1.7, [0.0, 0.0, 0.0]),
-        (4.0, [FAST, 0.0, 0.0]),
+        (4.0, [MAX_SPEED, 0.0, 0.0]),
         (2.3, [0.0, 0.0, 0.6]),
         (2.0, [0.0, 0.0, 0.0]),
     ],
@@ -120,32 +120,32 @@ const TRIALS: [&[Part]; 3] = [
         (1.3, [0.0, 0.0, 0.0]),
         (3.0, [0.4, 0.0, 0.5]),
         (1.0, [0.0, 0.0, 0.0]),
-        (3.0, [FAST, 0.0, 0.0]),
+        (3.0, [MAX_SPEED, 0.0, 0.0]),
         (1.0, [-0.1, 0.0, 0.0]),
-        (3.0, [FAST, 0.0, -0.2]),
+        (3.0, [MAX_SPEED, 0.0, -0.2]),
     ],
 ];
 /// By how much the seconds of a part differ by chance, in both directions.
-const SPREAD: f64 = 0.4;
+const TIME_SPREAD: f64 = 0.4;
 /// How long the robot stands first, s.
-const STANDING: f64 = 1.0;
+const STANDING_TIME: f64 = 1.0;
 /// How long the robot has to reach a velocity before deviations count, s.
-const REACHING: f64 = 0.8;
+const SETTLING_TIME: f64 = 0.8;
 /// Deviations that cost as much as a second: m/s, m/s and rad/s.
 const DEVIATIONS: [f64; 3] = [0.2, 0.15, 0.4];
 /// The part of a deviation that counts while the robot is to stand.
-const STILL: f64 = 0.3;
+const STANDING_WEIGHT: f64 = 0.3;
 /// The cost of a fall, and the factor for the part of the trial that is left after it.
-const FALL: [f64; 2] = [1.5, 4.0];
+const FALL_COST: [f64; 2] = [1.5, 4.0];
 /// The cost of the mean inclination.
-const INCLINATION: f64 = 15.0;
+const INCLINATION_COST: f64 = 15.0;
 /// A torso with a smaller cosine of its inclination has fallen.
-const UPRIGHT: f64 = 0.54;
+const MIN_UPRIGHT_COSINE: f64 = 0.54;
 
 impl Walking {
     pub(crate) fn of(robot: &'static Humanoid) -> Walking {
-        let (elsewhere, fast): (&[_], _) = if *robot == K1 { (K1_BEGIN, K1_FAST) } else { (&[], FAST) };
-        Walking { robot, searched: begin(SEARCHED, elsewhere), fast }
+        let (elsewhere, fast): (&[_], _) = if *robot == K1 { (K1_BEGIN, K1_FAST) } else { (&[], MAX_SPEED) };
+        Walking { robot, searched: begin(SEARCHED_PARAMETERS, elsewhere), fast }
     }
 
     fn parameters(&self, values: &[f64]) -> SineParameters {
@@ -158,7 +158,7 @@ impl Walking {
             ("other_stiffness", other.0),
             ("other_damping", other.1),
         ];
-        for (name, value) in searched.chain(FIXED).chain(gains).chain([("forwards", self.fast)]) {
+        for (name, value) in searched.chain(FIXED_PARAMETERS).chain(gains).chain([("forwards", self.fast)]) {
             walk.set(name, value);
         }
         walk
@@ -193,7 +193,7 @@ fn trial_cost(
     let mut walker = Walker { walk: walk.clone(), ramp: Ramp::default(), motors: Motors::default() };
     let mut state = world.reset([20.0, 0.0])?;
     let (mut deviation, mut inclination, mut cycles) = (0.0, 0.0, 0);
-    let stand = [(STANDING, [0.0; 3])];
+    let stand = [(STANDING_TIME, [0.0; 3])];
     let fast = walk.gait().x.high;
     let parts: Vec<(usize, [f64; 3])> = stand
         .iter()
@@ -201,22 +201,22 @@ fn trial_cost(
         .map(|(seconds, velocity)| {
             let share = f64::from(chance.next_u32()) / f64::from(u32::MAX);
             let [x, y, turn] = *velocity;
-            (((seconds + SPREAD * (2.0 * share - 1.0)) / CYCLE) as usize, [x.min(fast), y, turn])
+            (((seconds + TIME_SPREAD * (2.0 * share - 1.0)) / CYCLE) as usize, [x.min(fast), y, turn])
         })
         .collect();
     let total: usize = parts.iter().map(|(cycles, _)| cycles).sum();
     for (part, (length, velocity)) in parts.iter().enumerate() {
-        let reaching = ((REACHING / CYCLE) as usize).min(length / 2);
+        let reaching = ((SETTLING_TIME / CYCLE) as usize).min(length / 2);
         let (mut sum, mut counted) = ([0.0; 3], 0);
         for cycle in 0..*length {
             let before = state;
             state = world.cycle(walker.advance(*velocity, &state))?;
-            if state.upright < UPRIGHT {
+            if state.upright < MIN_UPRIGHT_COSINE {
                 let left = (total - cycles) as f64 / total as f64;
                 return Ok(deviation / total as f64
-                    + FALL[0]
-                    + FALL[1] * left
-                    + INCLINATION * inclination / cycles.max(1) as f64);
+                    + FALL_COST[0]
+                    + FALL_COST[1] * left
+                    + INCLINATION_COST * inclination / cycles.max(1) as f64);
             }
             cycles += 1;
             inclination += 1.0 - state.upright;
@@ -227,14 +227,14 @@ fn trial_cost(
             }
         }
         if part > 0 {
-            let weight = if *velocity == [0.0; 3] { STILL } else { 1.0 } * *length as f64;
+            let weight = if *velocity == [0.0; 3] { STANDING_WEIGHT } else { 1.0 } * *length as f64;
             for axis in 0..3 {
                 let mean = sum[axis] / (f64::from(counted.max(1)) * CYCLE);
                 deviation += weight * (mean - velocity[axis]).abs() / DEVIATIONS[axis];
             }
         }
     }
-    Ok(deviation / total as f64 + INCLINATION * inclination / total as f64)
+    Ok(deviation / total as f64 + INCLINATION_COST * inclination / total as f64)
 }
 
 /// How far a robot has moved in its own frame, m and rad.

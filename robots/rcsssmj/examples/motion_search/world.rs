@@ -9,7 +9,7 @@ use monas_rcsssmj::{Humanoid, InclinationFilter, JOINTS};
 
 const PROGRAM: &str = include_str!("physics.py");
 /// The numbers of a state after those of the joints.
-const REST: usize = 6 + 5 + 2;
+const BASE_STATE_SIZE: usize = 6 + 5 + 2;
 /// The period of the server, s.
 pub(crate) const CYCLE: f64 = 0.02;
 
@@ -90,8 +90,8 @@ impl World {
 
     fn receive(&mut self) -> Result<State, Box<dyn Error>> {
         let joints = self.robot.joint_count();
-        let mut bytes = [0; 8 * (2 * JOINTS + REST)];
-        let bytes = &mut bytes[..8 * (2 * joints + REST)];
+        let mut bytes = [0; 8 * (2 * JOINTS + BASE_STATE_SIZE)];
+        let bytes = &mut bytes[..8 * (2 * joints + BASE_STATE_SIZE)];
         self.states.read_exact(bytes).map_err(ended)?;
         let numbers: Vec<f64> =
             bytes.as_chunks::<8>().0.iter().map(|bytes| f64::from_le_bytes(*bytes)).collect();

@@ -290,12 +290,12 @@ fn link() -> ElementRule {
         .identified_by(Identity::Attribute("name"))
 }
 
-const TOPICS: &str = "which topics: `soccer/ball`, `soccer/*`, `soccer/**`";
+const TOPICS_HINT: &str = "which topics: `soccer/ball`, `soccer/*`, `soccer/**`";
 
 fn send() -> ElementRule {
     let reliabilities = Kind::Word(vec!["reliable", "best_effort"]);
     ElementRule::new("send", "topics that are sent")
-        .attribute(attribute("topics", Kind::Text, TOPICS).required())
+        .attribute(attribute("topics", Kind::Text, TOPICS_HINT).required())
         .attribute(
             attribute("reliability", reliabilities, "whether lost messages are sent again").or("reliable"),
         )
@@ -305,7 +305,7 @@ fn send() -> ElementRule {
 fn receive() -> ElementRule {
     let places = Kind::Word(vec!["other", "own"]);
     ElementRule::new("receive", "topics that are received")
-        .attribute(attribute("topics", Kind::Text, TOPICS).required())
+        .attribute(attribute("topics", Kind::Text, TOPICS_HINT).required())
         .attribute(attribute("as", places, "as messages of the other host, or of this host").or("other"))
 }
 

@@ -73,7 +73,7 @@ impl<'a> JointElement<'a> {
                 .map_or([[0.0; 3]; 2], |origin| placement(origin, grammar, diagnostics)),
             axis: child("axis")
                 .filter(|_| kind != JointType::Fixed)
-                .map_or(AHEAD, |axis| direction(axis, grammar, diagnostics)),
+                .map_or(DEFAULT_AXIS, |axis| direction(axis, grammar, diagnostics)),
             limits,
             speed,
             mimic: child("mimic").and_then(|mimic| {
@@ -134,15 +134,15 @@ fn limits(
 }
 
 /// The axis of a joint that gives none.
-const AHEAD: [f64; 3] = [1.0, 0.0, 0.0];
+const DEFAULT_AXIS: [f64; 3] = [1.0, 0.0, 0.0];
 
 /// The unit vector of an axis.
 fn direction(axis: &Element, grammar: &Grammar, diagnostics: &mut Vec<Diagnostic>) -> [f64; 3] {
-    let Some(vector) = numbers::<3>(axis, "xyz", grammar, diagnostics) else { return AHEAD };
+    let Some(vector) = numbers::<3>(axis, "xyz", grammar, diagnostics) else { return DEFAULT_AXIS };
     let length = vector.iter().map(|part| part * part).sum::<f64>().sqrt();
     if length < 1e-9 || !length.is_finite() {
         diagnostics.push(axis.error("E0372", axis.name_span(), "the axis has no direction"));
-        return AHEAD;
+        return DEFAULT_AXIS;
     }
     vector.map(|part| part / length)
 }

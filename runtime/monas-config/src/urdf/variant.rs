@@ -6,7 +6,7 @@ use yase::{Diagnostic, Span};
 use super::description::Description;
 
 /// Tolerance of the comparison with the model, m and rad.
-const SAME: f64 = 1e-6;
+const TOLERANCE: f64 = 1e-6;
 
 /// Differences from a model that are not allowed to single robots: joints, lengths, axes, cameras,
 /// skills.
@@ -34,8 +34,9 @@ pub(super) fn excesses(description: &Description, model: &Anatomy) -> Vec<Diagno
 }
 
 fn exceeds(own: &Joint, model: &Joint) -> bool {
-    let further = own.limits.low < model.limits.low - SAME || own.limits.high > model.limits.high + SAME;
-    let faster = model.speed.is_some_and(|speed| own.speed.is_none_or(|own| own > speed + SAME));
+    let further =
+        own.limits.low < model.limits.low - TOLERANCE || own.limits.high > model.limits.high + TOLERANCE;
+    let faster = model.speed.is_some_and(|speed| own.speed.is_none_or(|own| own > speed + TOLERANCE));
     further || faster
 }
 
@@ -91,7 +92,8 @@ impl Comparison<'_> {
                     expected.name, self.model.model
                 );
                 self.report(span, message);
-            } else if apart(here.offset, expected.offset).max(apart(here.rotation, expected.rotation)) > SAME
+            } else if apart(here.offset, expected.offset).max(apart(here.rotation, expected.rotation))
+                > TOLERANCE
             {
                 let (name, model) = (&expected.name, &self.model.model);
                 let message = format!("`{name}` is at {}, in `{model}` at {}", place(here), place(expected));
@@ -150,7 +152,7 @@ fn moves_alike(one: &Link, other: &Link) -> bool {
         (Some(one), Some(other)) => {
             let way = |motion: LinkMotion| motion.axis.map(|part| part * motion.factor);
             let difference = apart(way(one), way(other)).max((one.offset - other.offset).abs());
-            (one.joint, one.is_shift) == (other.joint, other.is_shift) && difference < SAME
+            (one.joint, one.is_shift) == (other.joint, other.is_shift) && difference < TOLERANCE
         }
         _ => false,
     }

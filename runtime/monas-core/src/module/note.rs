@@ -30,14 +30,15 @@ pub const BUILD: &str = concat!(
 );
 
 /// The field with the BLAKE3 hash of the module's file, in which the value of this field counts as
-/// [`UNSEALED`]. `monas module build` writes it.
-pub const CONTENT: &str = "content";
+/// [`UNSEALED_CONTENT`]. `monas module build` writes it.
+pub const CONTENT_FIELD: &str = "content";
 
-/// The value of the field [`CONTENT`] before it is written.
-pub const UNSEALED: &str = "0000000000000000000000000000000000000000000000000000000000000000";
+/// The value of the field [`CONTENT_FIELD`] before it is written.
+pub const UNSEALED_CONTENT: &str = "0000000000000000000000000000000000000000000000000000000000000000";
 
 /// Fields that must be equal in a module and in the program that loads it.
-const COMPARED: [&str; 8] = ["format", "compiler", "target", "profile", "flags", "monas", "features", "lock"];
+const COMPARED_FIELDS: [&str; 8] =
+    ["format", "compiler", "target", "profile", "flags", "monas", "features", "lock"];
 
 /// Build fingerprint of a program or a module.
 ///
@@ -94,7 +95,7 @@ impl BuildFingerprint {
     /// Fields that must be equal and are not.
     pub fn differences(&self, found: &BuildFingerprint) -> Vec<FingerprintMismatch> {
         let said = |note: &BuildFingerprint, key: &str| note.field(key).unwrap_or_default().to_owned();
-        COMPARED
+        COMPARED_FIELDS
             .into_iter()
             .filter(|key| self.field(key) != found.field(key))
             .map(|key| FingerprintMismatch {

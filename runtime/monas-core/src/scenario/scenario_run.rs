@@ -28,7 +28,7 @@ use crate::monitors::PropertyViolation;
 use crate::records::{CHART, Delivery, MODEL};
 
 /// Delay of an activity that returned `Ongoing`: the scenario decides when it is called again.
-const LATER: Duration = Duration::from_secs(1 << 30);
+const ONGOING_DELAY: Duration = Duration::from_secs(1 << 30);
 
 /// An activity whose results come from the scenario.
 struct StubActivity;
@@ -67,7 +67,7 @@ impl ChartDriver for ScenarioDriver {
     fn call(&mut self, call: ActivityCall, now: Timestamp) -> Dispatch {
         if call.is_resumed {
             // A message triggered the call; the activity remains ongoing.
-            return Dispatch::Finished(call.returning(Ok(Progress::Ongoing(LATER))), now);
+            return Dispatch::Finished(call.returning(Ok(Progress::Ongoing(ONGOING_DELAY))), now);
         }
         self.started.push(call.activation.node);
         Dispatch::Held(call)
@@ -261,7 +261,7 @@ impl<'a> ScenarioRun<'a> {
         };
         let result = match outcome {
             Outcome::Done => Ok(Progress::Done),
-            Outcome::Ongoing => Ok(Progress::Ongoing(LATER)),
+            Outcome::Ongoing => Ok(Progress::Ongoing(ONGOING_DELAY)),
             Outcome::Failed => Err(CallFailure::Error("as the scenario requires".into())),
         };
         // The scenario specifies this failure, and the chart has processed it.

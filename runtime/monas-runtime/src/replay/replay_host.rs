@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use narukom::{Hub, Observer, Publication, Timestamp, TopicSlot};
 
-use super::super::ENDED;
+use super::super::END_REASON;
 use super::super::admin::HostAdmin;
 use super::super::agent_factory::AgentFactory;
 use super::super::agent_instance::{AgentInstance, PublishedTopics};
@@ -349,7 +349,7 @@ impl ReplayHost {
         self.has_ended = true;
         let now = self.now;
         for ReplayedAgent { instance, comparison: window, .. } in &mut self.agents {
-            let produced = output.capture(|| instance.stop(ENDED, now));
+            let produced = output.capture(|| instance.stop(END_REASON, now));
             produced.into_iter().for_each(|one| window.produced(one.topic, one.bytes));
         }
     }

@@ -10,7 +10,7 @@ use std::path::Path;
 
 use yase::Source;
 
-use super::super::ENDED;
+use super::super::END_REASON;
 use super::super::admin::AgentControl;
 use super::super::agent_entry;
 use super::super::agent_factory::PreparedAgent;
@@ -87,7 +87,7 @@ impl AgentControl for ReplayedAgents<'_> {
     fn remove(&mut self, agent: &str) -> Result<(), String> {
         let now = self.now;
         if let Some(instance) = self.instance_mut(agent) {
-            instance.stop(ENDED, now);
+            instance.stop(END_REASON, now);
         }
         Ok(())
     }

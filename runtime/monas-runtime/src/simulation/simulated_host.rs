@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use narukom::{Hub, Timestamp};
 
-use crate::ENDED;
+use crate::END_REASON;
 use crate::admin::{AgentControl, HostAdmin};
 use crate::agent_entry;
 use crate::agent_factory::{AgentFactory, PreparedAgent};
@@ -166,7 +166,7 @@ impl SimulatedHost {
     }
 
     pub(crate) fn stop(&mut self, now: Timestamp) {
-        self.team.instances.iter_mut().for_each(|instance| instance.stop(ENDED, now));
+        self.team.instances.iter_mut().for_each(|instance| instance.stop(END_REASON, now));
     }
 
     /// Applies an external change.
@@ -274,7 +274,7 @@ impl AgentControl for SimulatedAgents<'_> {
     fn remove(&mut self, agent: &str) -> Result<(), String> {
         if let Some(place) = self.team.instances.iter().position(|known| known.name() == agent) {
             let mut instance = self.team.instances.remove(place);
-            instance.stop(ENDED, self.now);
+            instance.stop(END_REASON, self.now);
             self.team.removed.push(instance.statistics(&self.team.host));
         }
         Ok(())

@@ -13,14 +13,14 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use super::primitives::Primitives;
 
 /// Approximate time to wake a thread, in nanoseconds. Longer spinning does not pay off.
-const WAKING: u64 = 50_000;
+const WAKE_UP_TIME: u64 = 50_000;
 
 /// Spin time of a thread whose waits are usually longer, in nanoseconds.
-const BRIEFLY: u64 = 2_000;
+const SHORT_SPIN: u64 = 2_000;
 
 /// Upper bound of a wait in the average, in nanoseconds, so that a single long wait does not
 /// dominate.
-const MOST: u64 = 4 * WAKING;
+const MAX_COUNTED_WAIT: u64 = 4 * WAKE_UP_TIME;
 
 /// The usual length of the waits of one thread, or of several that wait for the same event. It is a
 /// hint: concurrent updates may overwrite each other.
@@ -33,21 +33,21 @@ pub(crate) struct Wait(u64);
 
 impl AdaptiveSpin {
     pub(crate) fn new() -> AdaptiveSpin {
-        AdaptiveSpin { usual: AtomicU64::new(WAKING) }
+        AdaptiveSpin { usual: AtomicU64::new(WAKE_UP_TIME) }
     }
 
     /// Begins a wait: spins until `worth` holds, for at most `at_most` nanoseconds.
     pub(crate) fn spin_then_park<P: Primitives>(&self, at_most: u64, worth: impl Fn() -> bool) -> Wait {
         let wait = Wait(P::nanos());
         let usual = self.usual.load(Ordering::Relaxed);
-        let limit = if usual < WAKING { WAKING } else { BRIEFLY }.min(at_most);
+        let limit = if usual < WAKE_UP_TIME { WAKE_UP_TIME } else { SHORT_SPIN }.min(at_most);
         P::spin(limit, worth);
         wait
     }
 
     /// Ends a wait.
     pub(crate) fn waited<P: Primitives>(&self, wait: &Wait) {
-        let took = P::nanos().saturating_sub(wait.0).min(MOST);
+        let took = P::nanos().saturating_sub(wait.0).min(MAX_COUNTED_WAIT);
         let usual = self.usual.load(Ordering::Relaxed);
         self.usual.store((3 * usual + took) / 4, Ordering::Relaxed);
     }
@@ -96,13 +96,16 @@ mod tests {
     #[test]
     fn short_waits_spin_and_long_waits_sleep() {
         let habit = AdaptiveSpin::new();
-        assert_eq!(looked_out(&habit, &[1_000, 1_000]), [BRIEFLY, WAKING]);
+        assert_eq!(looked_out(&habit, &[1_000, 1_000]), [SHORT_SPIN, WAKE_UP_TIME]);
         let hour = 3_600_000_000_000;
         let waits = [hour, 1_000, 1_000, 1_000, hour, hour];
-        assert_eq!(looked_out(&habit, &waits), [WAKING, BRIEFLY, BRIEFLY, WAKING, WAKING, BRIEFLY]);
+        assert_eq!(
+            looked_out(&habit, &waits),
+            [WAKE_UP_TIME, SHORT_SPIN, SHORT_SPIN, WAKE_UP_TIME, WAKE_UP_TIME, SHORT_SPIN]
+        );
         // After a few short waits the long ones no longer matter.
         let last = looked_out(&habit, &[1_000; 6]).pop();
-        assert_eq!(last, Some(WAKING));
+        assert_eq!(last, Some(WAKE_UP_TIME));
     }
 
     #[test]

@@ -47,14 +47,14 @@ pub(crate) trait Flag: Send + Sync {
 
 /// Spin time after which the thread yields the processor, in nanoseconds: the awaited work may be
 /// on the same core.
-const ALONE: u64 = 2_000;
+const YIELD_AFTER: u64 = 2_000;
 
 thread_local! {
     /// The same for this thread: zero if it has a single core, where the awaited work is certainly
     /// on the same core.
     static ALONE_HERE: u64 = match thread::available_parallelism() {
         Ok(cores) if cores.get() == 1 => 0,
-        _ => ALONE,
+        _ => YIELD_AFTER,
     };
 }
 

@@ -13,7 +13,7 @@ use narukom::{Observer, Publication};
 use yase::Source;
 
 /// Longer than any successful operation takes.
-const PATIENCE: Duration = Duration::from_secs(20);
+const TIMEOUT: Duration = Duration::from_secs(20);
 
 /// All parts of an activity that run its code, except its constructor and `configure`.
 const PARTS: [&str; 8] = ["name", "topics", "start", "execute", "stop", "drop", "display", "end of an error"];
@@ -175,7 +175,7 @@ fn of_a_function_in_a_guard_leave_the_guard_without_a_value() {
 
 /// The next word.
 fn next(words: &Receiver<&'static str>) -> &'static str {
-    words.recv_timeout(PATIENCE).unwrap()
+    words.recv_timeout(TIMEOUT).unwrap()
 }
 
 #[test]

@@ -13,7 +13,7 @@ use monas::{
 use yase::{MicroStepCause, Source, Statechart};
 
 /// Longer than any successful operation takes.
-const PATIENCE: Duration = Duration::from_secs(20);
+const TIMEOUT: Duration = Duration::from_secs(20);
 
 fn chart(text: &str) -> Statechart {
     let (chart, diagnostics) = aseme_models::statechart_of(&Source::new("m.srm", text));
@@ -47,7 +47,7 @@ impl PoolFixture {
         let (report, gate) = (fixture.report.clone(), fixture.gate.clone());
         fixture.with("Work", move |_| {
             report.send("Work begins".into())?;
-            gate.lock().unwrap().recv_timeout(PATIENCE)?;
+            gate.lock().unwrap().recv_timeout(TIMEOUT)?;
             report.send("Work ends".into())?;
             Ok(Progress::Done)
         })
@@ -99,7 +99,7 @@ impl PoolFixture {
 
     /// The next recorded words.
     fn next(&self, count: usize) -> Vec<String> {
-        (0..count).map(|_| self.words.recv_timeout(PATIENCE).unwrap()).collect()
+        (0..count).map(|_| self.words.recv_timeout(TIMEOUT).unwrap()).collect()
     }
 
     fn report_news(&self) {
@@ -138,7 +138,7 @@ fn activities_of_three_regions_run_at_the_same_time_and_never_two_of_one() {
                 }
                 inside.store(false, Ordering::SeqCst);
                 match past {
-                    true => sender.send(name).map(|()| Progress::after(PATIENCE)).map_err(BoxError::from),
+                    true => sender.send(name).map(|()| Progress::after(TIMEOUT)).map_err(BoxError::from),
                     false => Ok(Progress::Done),
                 }
             }
@@ -146,7 +146,7 @@ fn activities_of_three_regions_run_at_the_same_time_and_never_two_of_one() {
     });
     let text = "Liveness:\nm = (A . A)~ || (B . B)~ || (C . C)~";
     let running = Talws::new().registry(registry).agent(Agent::statechart("m", chart(text))).start().unwrap();
-    let mut all: Vec<&str> = (0..3).map(|_| done.recv_timeout(PATIENCE).unwrap()).collect();
+    let mut all: Vec<&str> = (0..3).map(|_| done.recv_timeout(TIMEOUT).unwrap()).collect();
     all.sort_unstable();
     assert_eq!(all, ["A", "B", "C"]);
     let statistics = running.stop();
@@ -233,7 +233,7 @@ fn two_states_with_one_activity_have_an_instance_and_a_running_flag_each() {
         let number = made.fetch_add(1, Ordering::SeqCst);
         move |_: &mut Blackboard| -> Result<(), BoxError> {
             if number == 1 {
-                gate.lock().unwrap().recv_timeout(PATIENCE)?;
+                gate.lock().unwrap().recv_timeout(TIMEOUT)?;
             }
             Ok(report.send(format!("Same {number}"))?)
         }

@@ -19,7 +19,7 @@ use narukom::{Observer, Publication};
 use yase::{Source, Statechart};
 
 /// Longer than any successful operation takes.
-const PATIENCE: Duration = Duration::from_secs(20);
+const TIMEOUT: Duration = Duration::from_secs(20);
 
 fn chart(text: &str) -> Statechart {
     let (chart, diagnostics) = aseme_models::statechart_of(&Source::new("m.srm", text));
@@ -33,7 +33,7 @@ fn news<T>() -> (Sender<T>, Receiver<T>) {
 
 /// The next `count` values.
 fn next<T>(receiver: &Receiver<T>, count: usize) -> Vec<T> {
-    (0..count).map(|_| receiver.recv_timeout(PATIENCE).unwrap()).collect()
+    (0..count).map(|_| receiver.recv_timeout(TIMEOUT).unwrap()).collect()
 }
 
 #[test]

@@ -13,7 +13,7 @@ use monas::{
 use yase::Source;
 
 /// Longer than any successful operation takes.
-const PATIENCE: Duration = Duration::from_secs(20);
+const TIMEOUT: Duration = Duration::from_secs(20);
 
 /// The limit of the agents here.
 const LIMIT: Duration = Duration::from_millis(50);
@@ -27,7 +27,7 @@ struct ClingingActivity {
 impl Activity for ClingingActivity {
     fn execute(&mut self, _: &mut Blackboard) -> Result<Progress, BoxError> {
         let _ = self.called.send(());
-        Ok(Progress::after(PATIENCE))
+        Ok(Progress::after(TIMEOUT))
     }
 
     fn stop(&mut self, _: &mut Blackboard) {
@@ -69,14 +69,14 @@ fn a_run_in_real_time_ends_though_an_activity_does_not_stop() {
         let (talws, calls, release) = clinging(is_chart);
         let (sender, reported) = channel();
         let running = talws.agent(Agent::new("b", Hz(100)).activity(StopReporter(sender))).start().unwrap();
-        calls.recv_timeout(PATIENCE).unwrap();
-        assert_eq!(reported.recv_timeout(PATIENCE).unwrap(), "execute");
+        calls.recv_timeout(TIMEOUT).unwrap();
+        assert_eq!(reported.recv_timeout(TIMEOUT).unwrap(), "execute");
         let statistics = running.stop();
         let reason = statistics.agents[0].stopped.clone().unwrap();
         let expected = "abandoned at the end of the run: activity `Clinging` of agent `a` on `local` has not \
                         returned from `stop` for ";
         assert!(reason.starts_with(expected), "{reason}");
-        while reported.recv_timeout(PATIENCE).unwrap() != "stop" {}
+        while reported.recv_timeout(TIMEOUT).unwrap() != "stop" {}
         release.send(()).unwrap();
     }
 }
@@ -87,7 +87,7 @@ fn a_simulation_ends_though_an_activity_does_not_stop() {
         let (talws, calls, release) = clinging(is_chart);
         let mut simulation = talws.simulate(1).unwrap();
         simulation.run_until(at(100)).unwrap();
-        calls.recv_timeout(PATIENCE).unwrap();
+        calls.recv_timeout(TIMEOUT).unwrap();
         let error = simulation.stop_within(LIMIT).unwrap_err();
         let expected =
             "activity `Clinging` of agent `a` on `local` has not returned from `stop` within 0.1 s";
@@ -102,7 +102,7 @@ fn a_simulation_that_stops_in_time_is_given_back() {
     release.send(()).unwrap();
     let mut simulation = talws.simulate(1).unwrap();
     simulation.run_until(at(100)).unwrap();
-    assert_eq!(simulation.stop_within(PATIENCE).unwrap().statistics().agents[0].cycles, 10);
+    assert_eq!(simulation.stop_within(TIMEOUT).unwrap().statistics().agents[0].cycles, 10);
 }
 
 /// The first agent, when it is stuck.
@@ -133,7 +133,7 @@ fn a_long_call_of_a_chart_does_not_end_the_run() {
     let run = running.run_handle();
     stuck(&run);
     leave.wait();
-    assert_eq!(left.1.recv_timeout(PATIENCE).unwrap(), "execute");
+    assert_eq!(left.1.recv_timeout(TIMEOUT).unwrap(), "execute");
     running.stop();
 }
 

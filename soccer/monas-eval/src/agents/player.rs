@@ -12,7 +12,7 @@ use monas_soccer::functionality::approach::Approach;
 use monas_soccer::functionality::avoidance::{avoid, keep_out};
 use monas_soccer::functionality::field::Goal;
 use monas_soccer::functionality::head::{Gaze, HeadController};
-use monas_soccer::functionality::support::{AHEAD, support_place};
+use monas_soccer::functionality::support::{DISTANCE_AHEAD, support_place};
 use monas_soccer::functionality::walk::{Walk, stride_to, turn_to};
 use monas_soccer::{Ball, MotionKind, topics};
 use nalgebra::Point2;
@@ -130,7 +130,7 @@ fn support(blackboard: &mut Blackboard, ball: &Ball) -> Result<(), BoxError> {
         return request_stand(blackboard);
     };
     let here = Point2::from(field_from_robot.translation.vector);
-    let place = support_place(&field, field_from_robot * ball.position(), here, AHEAD);
+    let place = support_place(&field, field_from_robot * ball.position(), here, DISTANCE_AHEAD);
     let place = field_from_robot.inverse_transform_point(&place);
     let distance = place.coords.norm();
     let walk = if distance < 0.2 {

@@ -10,7 +10,7 @@ use crate::{SimulatedWorld, TeamColour};
 
 /// The usual width of an image, pixels. Images of 640 by 480 take four times as long to draw, and
 /// show objects up to twice as far away, which play on a field of 6 m hardly needs.
-const WIDTH: u32 = 320;
+const DEFAULT_WIDTH: u32 = 320;
 /// Standard deviation of noise and blur (chosen: those of an image that is sharp).
 const NOISE: f64 = 3.0;
 const BLUR: f64 = 0.6;
@@ -33,7 +33,7 @@ pub(super) struct ImageCamera {
 impl ImageCamera {
     /// A camera with images of this width, pixels, or of the usual one, and three quarters as high.
     pub(super) fn with_width(width: Option<u32>) -> ImageCamera {
-        let width = width.unwrap_or(WIDTH) as usize;
+        let width = width.unwrap_or(DEFAULT_WIDTH) as usize;
         ImageCamera { renderer: Renderer::default(), width, height: width * 3 / 4, taken: 0 }
     }
 

@@ -97,7 +97,7 @@ mod tests {
     use super::*;
     use crate::{BodyPhase, Pose, Vector};
 
-    const TENTH: u64 = 100_000_000;
+    const TENTH_OF_SECOND: u64 = 100_000_000;
 
     fn channel(radio: Radio) -> RadioChannel {
         let robot = |number| RobotState {
@@ -119,14 +119,15 @@ mod tests {
     fn received(radio: Radio) -> Vec<(u64, u16)> {
         let (mut channel, mut received) = (channel(radio), Vec::new());
         for moment in 0..1100u16 {
-            let now = u64::from(moment) * TENTH;
+            let now = u64::from(moment) * TENTH_OF_SECOND;
             if moment < 1000 {
                 channel.broadcast(0, now, &moment.to_le_bytes());
             }
             let mut heard = Vec::new();
             channel.receive(1, now, &mut heard);
             let number = |words: &[u8]| u16::from_le_bytes([words[0], words[1]]);
-            received.extend(heard.iter().map(|heard| (heard.heard_at / TENTH, number(&heard.words))));
+            received
+                .extend(heard.iter().map(|heard| (heard.heard_at / TENTH_OF_SECOND, number(&heard.words))));
         }
         received
     }

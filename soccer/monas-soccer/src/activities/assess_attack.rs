@@ -103,7 +103,9 @@ fn mates(
         let mut mate = player(report, ball);
         let distance = |place: &Point2<f64>| (place - mate.place).norm();
         let nearest = (0..seen.len()).min_by(|a, b| distance(&seen[*a]).total_cmp(&distance(&seen[*b])));
-        if let Some(index) = nearest.filter(|index| distance(&seen[*index]) < SAME + SPEED * report.age) {
+        if let Some(index) =
+            nearest.filter(|index| distance(&seen[*index]) < MATCHING_DISTANCE + MATCHING_SPEED * report.age)
+        {
             mate.place = seen.swap_remove(index);
             mate.ball_distance = (mate.place - ball).norm();
         }
@@ -114,14 +116,14 @@ fn mates(
 
 /// Distance within which a seen mate is identified with a report, metres, and its growth with the
 /// age of the report, m/s.
-const SAME: f64 = 0.5;
-const SPEED: f64 = 0.3;
+const MATCHING_DISTANCE: f64 = 0.5;
+const MATCHING_SPEED: f64 = 0.3;
 
 /// Handicaps of a player on its way to the ball, as metres of straight walk: lying on the ground,
 /// not seeing the ball, and each second since its last report.
-const DOWN: f64 = 1.0;
-const BLIND: f64 = 1.0;
-const OLD: f64 = 0.05;
+const FALLEN_HANDICAP: f64 = 1.0;
+const UNSEEN_BALL_HANDICAP: f64 = 1.0;
+const REPORT_AGE_HANDICAP: f64 = 0.05;
 
 fn player(report: &TeamReport, ball: Point2<f64>) -> AttackPlayer {
     let place = Point2::new(report.x, report.y);
@@ -130,9 +132,9 @@ fn player(report: &TeamReport, ball: Point2<f64>) -> AttackPlayer {
         heading: report.heading,
         // A player's own measurement of its distance from the ball is the most accurate.
         ball_distance: if report.ball_found { report.ball_distance } else { (place - ball).norm() },
-        handicap: DOWN * f64::from(u8::from(report.is_down))
-            + BLIND * f64::from(u8::from(!report.ball_found))
-            + OLD * report.age,
+        handicap: FALLEN_HANDICAP * f64::from(u8::from(report.is_down))
+            + UNSEEN_BALL_HANDICAP * f64::from(u8::from(!report.ball_found))
+            + REPORT_AGE_HANDICAP * report.age,
         since_pass: report.since_pass + report.age,
         since_shot: report.since_shot + report.age,
     }

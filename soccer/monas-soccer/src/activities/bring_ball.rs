@@ -22,11 +22,11 @@ pub(super) const POLL_INTERVAL: Duration = Duration::from_millis(100);
 /// Time limit, after which it has failed.
 const TIMEOUT: Duration = Duration::from_secs(25);
 /// A ball that is not seen for this long is lost, seconds.
-pub(super) const LOST: f64 = 2.5;
+pub(super) const BALL_LOST_AFTER: f64 = 2.5;
 /// Distance from the ball within which the robot aligns instead of approaching, metres.
-const NEAR: f64 = 0.25;
+const ALIGN_DISTANCE: f64 = 0.25;
 /// Accepted final error of the heading to the target, radians.
-const FACING: f64 = 0.2;
+const HEADING_TOLERANCE: f64 = 0.2;
 
 /// Walks to the ball and round it, looking at it, until it lies in front of a foot and the robot
 /// faces a target.
@@ -48,7 +48,8 @@ impl BringBall {
     ) -> Result<Progress, BoxError> {
         let now = blackboard.now();
         let late = now.since(*self.since.get_or_insert(now)) > TIMEOUT;
-        let Some(ball) = blackboard.read(topics::BALL).copied().filter(|ball| ball.age < LOST) else {
+        let Some(ball) = blackboard.read(topics::BALL).copied().filter(|ball| ball.age < BALL_LOST_AFTER)
+        else {
             return Ok(Progress::Done);
         };
         let ground = ground(blackboard);
@@ -64,7 +65,7 @@ impl BringBall {
 
     fn is_there(&self, ball: &Ball, target: Point2<f64>) -> bool {
         let off = angle_of(&(target - ball.position()));
-        self.alignment.is_at_foot(ball.position()) && off.abs() < FACING
+        self.alignment.is_at_foot(ball.position()) && off.abs() < HEADING_TOLERANCE
     }
 
     fn walk(
@@ -77,7 +78,7 @@ impl BringBall {
         if ball.approaching {
             return GoalPositioning::default().step_before(ball.crossing_y);
         }
-        if ball.distance <= NEAR {
+        if ball.distance <= ALIGN_DISTANCE {
             return self.alignment.walk(ball.position(), target);
         }
         let obstacles: Vec<Point2<f64>> = others(blackboard).map(|robot| robot.position()).collect();
@@ -201,7 +202,7 @@ mod tests {
     fn it_gives_up_when_the_ball_is_lost_and_after_a_while() {
         let mut activity = BringBallToShoot::default();
         let mut lost = stage((2.0, 0.0));
-        lost.publish(topics::BALL, Ball { x: 2.0, distance: 2.0, age: LOST, ..Ball::default() });
+        lost.publish(topics::BALL, Ball { x: 2.0, distance: 2.0, age: BALL_LOST_AFTER, ..Ball::default() });
         assert!(lost.run(&mut activity));
         let mut kept_out = stage((2.0, 0.0));
         let ball = Ball { found: true, x: 2.0, distance: 2.0, in_own_area: true, ..Ball::default() };

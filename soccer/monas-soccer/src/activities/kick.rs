@@ -22,7 +22,7 @@ struct Strength {
 
 /// Distance of an opponent from the ball within which a kick from afar is soft, metres. Where none
 /// is near, a hard kick costs less time than a second walk to the ball.
-const CONTESTED: f64 = 1.0;
+const CONTESTED_DISTANCE: f64 = 1.0;
 
 impl Strength {
     fn of(parameters: &Parameters) -> Strength {
@@ -50,7 +50,8 @@ impl Strength {
 /// Whether an opponent is near the ball, which is at a point of the robot's frame, and may move.
 fn is_contested(blackboard: &Blackboard, ball: Point2<f64>) -> bool {
     !opponents_stand(blackboard)
-        && others(blackboard).any(|robot| !robot.team_mate && (robot.position() - ball).norm() < CONTESTED)
+        && others(blackboard)
+            .any(|robot| !robot.team_mate && (robot.position() - ball).norm() < CONTESTED_DISTANCE)
 }
 
 macro_rules! kick {
@@ -169,8 +170,8 @@ mod tests {
             let robot = OtherRobot { x, y: 0.05, team_mate, ..OtherRobot::default() };
             wanted_near(&mut soft(), Some(Pose::default()), robot).ball_speed > 0.0
         };
-        assert!(is_soft(0.15 + CONTESTED - 0.05, false));
-        assert!(!is_soft(0.15 + CONTESTED + 0.05, false), "the opponent is far");
+        assert!(is_soft(0.15 + CONTESTED_DISTANCE - 0.05, false));
+        assert!(!is_soft(0.15 + CONTESTED_DISTANCE + 0.05, false), "the opponent is far");
         assert!(!is_soft(0.65, true), "a team mate");
     }
 

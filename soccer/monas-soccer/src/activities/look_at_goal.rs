@@ -23,14 +23,14 @@ pub struct LookAtGoal {
 }
 
 /// Duration of the look, shorter than the validity of a request to walk.
-const LOOK: Duration = Duration::from_millis(400);
+const LOOK_TIME: Duration = Duration::from_millis(400);
 /// Duration of the look to a side: long enough for the head to turn, and short enough to keep the
 /// estimate of the ball.
 const LOOK_ASIDE: Duration = Duration::from_millis(700);
 /// Confidence of the pose below which a robot does not know where the goals are.
-const LOST: f64 = 0.5;
+const LOST_CONFIDENCE: f64 = 0.5;
 /// The direction of a look to a side, and its height, radians.
-const ASIDE: Gaze = Gaze { yaw: 1.8, pitch: -0.1 };
+const SIDE_GAZE: Gaze = Gaze { yaw: 1.8, pitch: -0.1 };
 
 impl Activity for LookAtGoal {
     fn execute(&mut self, blackboard: &mut Blackboard) -> Result<Progress, BoxError> {
@@ -38,10 +38,10 @@ impl Activity for LookAtGoal {
         let begins = self.since.is_none();
         let looked = now.since(*self.since.get_or_insert(now));
         if begins {
-            let is_lost = blackboard.read(topics::POSE).is_some_and(|pose| pose.confidence < LOST);
+            let is_lost = blackboard.read(topics::POSE).is_some_and(|pose| pose.confidence < LOST_CONFIDENCE);
             self.side = is_lost.then(|| self.side.map_or(1.0, |side| -side));
         }
-        let length = if self.side.is_some() { LOOK_ASIDE } else { LOOK };
+        let length = if self.side.is_some() { LOOK_ASIDE } else { LOOK_TIME };
         let gaze = self.gaze(blackboard).filter(|_| looked < length);
         let Some(gaze) = gaze else {
             self.since = None;
@@ -67,7 +67,7 @@ impl LookAtGoal {
         let ground = ground(blackboard)?;
         let bearing = blackboard.read(topics::BALL)?.bearing;
         if let Some(side) = self.side {
-            return Some(Gaze { yaw: ASIDE.yaw * side, ..ASIDE });
+            return Some(Gaze { yaw: SIDE_GAZE.yaw * side, ..SIDE_GAZE });
         }
         let gazes = [Goal::Opponent, Goal::Own].map(|goal| {
             let goal_in_robot = ground.field_from_robot.inverse_transform_point(&ground.field.goal(goal));
@@ -99,7 +99,7 @@ mod tests {
             assert!(!stage.run(&mut activity));
             assert!((stage.latest(topics::HEAD).unwrap().yaw - yaw).abs() < 0.01);
             assert_eq!(stage.latest(topics::MOTION), None);
-            assert!(stage.wait(LOOK).run(&mut activity));
+            assert!(stage.wait(LOOK_TIME).run(&mut activity));
         }
     }
 
@@ -109,11 +109,11 @@ mod tests {
         let game = GameState { field_length: 6.0, field_width: 4.0, ..GameState::default() };
         stage.publish(topics::GAME_STATE, game).publish(topics::BALL, Ball::default());
         stage.publish(topics::POSE, Pose { confidence: 0.3, ..Pose::default() });
-        for yaw in [ASIDE.yaw, -ASIDE.yaw, ASIDE.yaw] {
+        for yaw in [SIDE_GAZE.yaw, -SIDE_GAZE.yaw, SIDE_GAZE.yaw] {
             assert!(!stage.run(&mut activity));
             assert_eq!(stage.latest(topics::HEAD).unwrap().yaw, yaw);
-            assert!(!stage.wait(LOOK).run(&mut activity), "it takes longer");
-            assert!(stage.wait(LOOK).run(&mut activity));
+            assert!(!stage.wait(LOOK_TIME).run(&mut activity), "it takes longer");
+            assert!(stage.wait(LOOK_TIME).run(&mut activity));
         }
     }
 }

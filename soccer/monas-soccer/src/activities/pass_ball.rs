@@ -26,15 +26,15 @@ pub struct PassBall {
 }
 
 /// How long the outcome of a pass is watched.
-const WATCH: Duration = Duration::from_millis(500);
+const WATCH_TIME: Duration = Duration::from_millis(500);
 /// Speed at which a pass arrives at the partner, m/s.
-const ARRIVAL: f64 = 0.55;
+const ARRIVAL_SPEED: f64 = 0.55;
 
 impl Activity for PassBall {
     fn execute(&mut self, blackboard: &mut Blackboard) -> Result<Progress, BoxError> {
         let now = blackboard.now();
         match self.kicked_at {
-            Some(kicked_at) if now.since(kicked_at) >= WATCH => {
+            Some(kicked_at) if now.since(kicked_at) >= WATCH_TIME => {
                 self.forget();
                 Ok(Progress::Done)
             }
@@ -68,7 +68,7 @@ impl Activity for PassBall {
 fn pass_speed(blackboard: &Blackboard) -> f64 {
     let Some(ball) = blackboard.read(topics::BALL).copied() else { return 0.0 };
     let way = (mate(blackboard, &ball, ground(blackboard).as_ref()) - ball.position()).norm();
-    BallModel::default().speed_for(way, ARRIVAL)
+    BallModel::default().speed_for(way, ARRIVAL_SPEED)
 }
 
 impl PassBall {
@@ -136,7 +136,7 @@ mod tests {
             assert!(!stage.wait(TICK).run(&mut activity));
             assert_eq!(stage.latest(topics::HEAD).unwrap().mode(), HeadMode::Look);
             assert!(stage.latest(topics::MOTION).unwrap().wz < -0.1);
-            assert!(stage.wait(WATCH).run(&mut activity));
+            assert!(stage.wait(WATCH_TIME).run(&mut activity));
         }
     }
 }

@@ -7,7 +7,7 @@ use super::motion_requests::{request_stand, request_walk};
 use super::shot::{RobotAndField, ground, others};
 use crate::Ball;
 use crate::functionality::avoidance::{avoid, keep_out};
-use crate::functionality::support::{AHEAD, support_place};
+use crate::functionality::support::{DISTANCE_AHEAD, support_place};
 use crate::functionality::walk::{Walk, stride_to, turn_to};
 use crate::topics;
 
@@ -22,7 +22,7 @@ pub struct SupportMate {
 
 impl Default for SupportMate {
     fn default() -> SupportMate {
-        SupportMate { ahead: AHEAD }
+        SupportMate { ahead: DISTANCE_AHEAD }
     }
 }
 

@@ -29,9 +29,9 @@ pub struct TeamRadio {
 }
 
 /// How long a report is valid.
-const MEMORY: Duration = Duration::from_secs(4);
+const MAX_REPORT_AGE: Duration = Duration::from_secs(4);
 /// Time since a kick that never happened, seconds.
-const NEVER: f64 = 1e6;
+const NO_KICK: f64 = 1e6;
 
 impl Activity for TeamRadio {
     fn configure(&mut self, parameters: &Parameters) {
@@ -108,8 +108,8 @@ impl TeamRadio {
             ball_distance: ball.distance,
             ball_x: ball_in_field.x,
             ball_y: ball_in_field.y,
-            since_pass: self.kicks.since_pass(now).unwrap_or(NEVER),
-            since_shot: self.kicks.since_shot(now).unwrap_or(NEVER),
+            since_pass: self.kicks.since_pass(now).unwrap_or(NO_KICK),
+            since_shot: self.kicks.since_shot(now).unwrap_or(NO_KICK),
             age: 0.0,
             is_down: phase == Some(MotionPhase::Fallen),
             sequence: 0,
@@ -122,7 +122,7 @@ impl TeamRadio {
 fn listen(blackboard: &Blackboard) -> Vec<TeamReport> {
     let now = blackboard.now();
     let mut newest: BTreeMap<u32, TeamReport> = BTreeMap::new();
-    for heard in blackboard.recent(body::HEARD, MEMORY) {
+    for heard in blackboard.recent(body::HEARD, MAX_REPORT_AGE) {
         let Some(report) = understood(&heard.words) else { continue };
         // A message may arrive twice, or after one that was sent later.
         let is_old = |known: &TeamReport| report.sequence.wrapping_sub(known.sequence) as i32 <= 0;
@@ -247,7 +247,7 @@ mod tests {
 
     #[test]
     fn a_kick_that_is_meant_for_a_mate_is_a_pass_and_another_a_shot() {
-        for (is_pass, expected) in [(true, (0.0, NEVER)), (false, (NEVER, 0.0))] {
+        for (is_pass, expected) in [(true, (0.0, NO_KICK)), (false, (NO_KICK, 0.0))] {
             let (mut stage, mut radio) = player();
             let kind = MotionKind::KickLeft.into();
             stage.publish(
@@ -256,7 +256,7 @@ mod tests {
             );
             stage.run(&mut radio);
             let since = |report: TeamReport| (report.since_pass, report.since_shot);
-            assert_eq!(since(last_report(&mut stage)), (NEVER, NEVER));
+            assert_eq!(since(last_report(&mut stage)), (NO_KICK, NO_KICK));
             stage.wait(8 * TICK);
             stage.run(&mut radio);
             assert_eq!(since(last_report(&mut stage)), expected, "and it is said at once");
@@ -282,7 +282,7 @@ mod tests {
             stage.publish(topics::MOTION_STATE, ends).wait(2 * TICK).run(&mut radio);
             stage.wait(7 * TICK).run(&mut radio);
             let report = stage.latest(topics::TEAM).unwrap().own.unwrap();
-            assert_eq!(report.since_pass < NEVER, is_said, "{ends:?}");
+            assert_eq!(report.since_pass < NO_KICK, is_said, "{ends:?}");
         }
     }
 

@@ -23,7 +23,7 @@ pub struct TurnAround {
 }
 
 /// Time without a request after which a turn is over.
-const PAUSE: Duration = Duration::from_secs(1);
+const TURN_TIMEOUT: Duration = Duration::from_secs(1);
 
 impl Default for TurnAround {
     fn default() -> TurnAround {
@@ -39,7 +39,7 @@ impl Activity for TurnAround {
     fn execute(&mut self, blackboard: &mut Blackboard) -> Result<Progress, BoxError> {
         let now = blackboard.now();
         let side = blackboard.read(topics::BALL).map_or(0.0, |ball| ball.bearing);
-        let same = self.turning.filter(|(at, _)| now.since(*at) < PAUSE);
+        let same = self.turning.filter(|(at, _)| now.since(*at) < TURN_TIMEOUT);
         let turn = same.map_or(self.turn_speed.copysign(side), |(_, turn)| turn);
         self.turning = Some((now, turn));
         let walk = Walk::turning(turn);
@@ -85,7 +85,7 @@ mod tests {
             assert_eq!(stage.latest(topics::MOTION).unwrap().wz, 0.7, "{bearing}");
             stage.wait(TICK);
         }
-        stage.wait(PAUSE).run(&mut activity);
+        stage.wait(TURN_TIMEOUT).run(&mut activity);
         assert_eq!(stage.latest(topics::MOTION).unwrap().wz, -0.7, "later it begins anew");
     }
 }

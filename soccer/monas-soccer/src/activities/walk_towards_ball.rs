@@ -25,7 +25,7 @@ pub struct WalkTowardsBall {
 }
 
 /// The effective speed of a robot towards a place, m/s: its path is not straight.
-const PROGRESS: f64 = 0.2;
+const EFFECTIVE_SPEED: f64 = 0.2;
 /// The deceleration of a rolling ball, m/s².
 const ROLLING_DECELERATION: f64 = 0.3;
 
@@ -66,7 +66,7 @@ impl WalkTowardsBall {
             return ball.position();
         }
         let (position, velocity) = (ball.position(), ball.velocity());
-        let place = meeting_place(position, velocity, ROLLING_DECELERATION, PROGRESS, self.foresight);
+        let place = meeting_place(position, velocity, ROLLING_DECELERATION, EFFECTIVE_SPEED, self.foresight);
         let Some(RobotAndField { field, field_from_robot }) = ground else { return place };
         let (end, side) = (field.length / 2.0, field.width / 2.0);
         let there = field_from_robot * place;

@@ -6,12 +6,12 @@ use monas::{Activity, Blackboard, BoxError, Progress, Topics};
 use nalgebra::Point2;
 use narukom::Timestamp;
 
-use super::bring_ball::{LOST, POLL_INTERVAL};
+use super::bring_ball::{BALL_LOST_AFTER, POLL_INTERVAL};
 use super::motion_requests::{request_gaze, request_walk};
 use super::shot::{ground, others};
 use super::support_mate::walk_to;
 use crate::functionality::head::HeadController;
-use crate::functionality::support::{AHEAD, support_place};
+use crate::functionality::support::{DISTANCE_AHEAD, support_place};
 use crate::{AttackPart, topics};
 
 /// Walks towards the opponents' goal to a position for receiving a pass, and waits there facing the
@@ -34,12 +34,13 @@ impl Activity for WalkTowardsGoal {
             self.since = None;
             return Ok(Progress::Done);
         }
-        let ball = blackboard.read(topics::BALL).copied().filter(|ball| ball.age < LOST);
+        let ball = blackboard.read(topics::BALL).copied().filter(|ball| ball.age < BALL_LOST_AFTER);
         let (Some(ball), Some(ground)) = (ball, ground(blackboard)) else {
             return Ok(Progress::after(POLL_INTERVAL));
         };
         let here = Point2::from(ground.field_from_robot.translation.vector);
-        let place = support_place(&ground.field, ground.field_from_robot * ball.position(), here, AHEAD);
+        let place =
+            support_place(&ground.field, ground.field_from_robot * ball.position(), here, DISTANCE_AHEAD);
         let obstacles: Vec<Point2<f64>> = others(blackboard).map(|robot| robot.position()).collect();
         let walk = walk_to(ground.field_from_robot.inverse_transform_point(&place), &ball, &obstacles);
         request_gaze(blackboard, self.head.look_at(ball.position()))?;
@@ -102,7 +103,7 @@ mod tests {
         let mut over = stage(pose, ball(1.0, 0.0));
         over.publish(topics::ATTACK, Attack::default());
         assert!(over.run(&mut WalkTowardsGoal::default()));
-        let mut unseen = stage(pose, Ball { age: LOST, ..ball(1.0, 0.0) });
+        let mut unseen = stage(pose, Ball { age: BALL_LOST_AFTER, ..ball(1.0, 0.0) });
         assert!(!unseen.run(&mut WalkTowardsGoal::default()), "the mate may see it");
         let (mut waiting, mut activity) = (stage(pose, ball(1.0, 0.0)), WalkTowardsGoal::default());
         assert!(!waiting.run(&mut activity));

@@ -6,7 +6,7 @@ use super::field::{FieldModel, Goal};
 
 /// Half the width of the goal line that a robot in the way of a shot covers, metres: robot, ball
 /// and a margin.
-const BLOCKED: f64 = 0.25;
+const BLOCKED_HALF_WIDTH: f64 = 0.25;
 /// Distance from a post that a shot keeps, metres.
 const FROM_POST: f64 = 0.15;
 
@@ -46,7 +46,7 @@ fn shadow(goal_x: f64, ball: Point2<f64>, robot: Point2<f64>) -> Option<(f64, f6
     }
     let stretch = to_goal / to_robot;
     let middle = ball.y + (robot.y - ball.y) * stretch;
-    Some((middle - BLOCKED * stretch, middle + BLOCKED * stretch))
+    Some((middle - BLOCKED_HALF_WIDTH * stretch, middle + BLOCKED_HALF_WIDTH * stretch))
 }
 
 /// The widest part between `low` and `high` that none of the shadows, sorted by their beginning,

@@ -14,36 +14,36 @@ use super::geometry::{angle_of, distance_to_segment, wrap};
 /// Distance within which a robot has the ball in reach, metres.
 pub const REACH: f64 = 0.35;
 /// Least difference between the distances of center and partner from the ball, metres.
-const MARGIN: f64 = 0.4;
+const CENTER_MARGIN: f64 = 0.4;
 /// Least distance of robots from the line of a pass or shot, metres: robot, ball and a margin.
-const WAY: f64 = 0.3;
+const LINE_CLEARANCE: f64 = 0.3;
 /// Least and greatest length of a pass, metres.
-const PASS: (f64, f64) = (0.7, 3.5);
+const PASS_LENGTH: (f64, f64) = (0.7, 3.5);
 /// Accepted error of the heading for a kick, radians.
-const FACING: f64 = 0.22;
+const KICK_HEADING_ERROR: f64 = 0.22;
 /// Time after a pass for which the ball belongs to the partner, seconds: it rolls, and the partner
 /// walks to it and round it.
-const PASSED: f64 = 20.0;
+const PASS_TIME: f64 = 20.0;
 /// How long a shot counts as outcome, seconds.
-const SHOT: f64 = 1.0;
+const SHOT_TIME: f64 = 1.0;
 /// Margin by which an opponent must be nearer to the ball than the team to count as having it,
 /// metres: reports of mates that walk to the ball are old.
-const HAS: f64 = 0.1;
+const POSSESSION_MARGIN: f64 = 0.1;
 /// Distance from the goal beyond which a pass is better than a shot, metres: from 2 m and more a
 /// goalie lets in a few of a hundred shots.
 const SHOT_LENGTH: f64 = 1.8;
 /// Distance from the ball within which the center has its part, metres. A player that is farther
 /// away walks to the ball as it would alone.
-const BEGIN: f64 = 1.2;
+const CENTER_DISTANCE: f64 = 1.2;
 /// Prediction time for a rolling ball, seconds.
-const FORESIGHT: f64 = 0.4;
+const PREDICTION_TIME: f64 = 0.4;
 /// Cost of turning by a radian, metres of walk.
 const TURN_COST: f64 = 0.15;
 /// Cost of walking round the ball by a radian, metres of walk.
 const ROUND_COST: f64 = 0.25;
 /// Time for which a player leaves the ball to its mates after a pass, seconds, and the
 /// corresponding cost, metres of walk.
-const YIELDING: f64 = 6.0;
+const YIELD: f64 = 6.0;
 const YIELD_COST: f64 = 2.0;
 
 /// A part in the attack.
@@ -129,7 +129,7 @@ pub struct AttackState {
 pub fn evaluate(scene: &AttackSituation<'_>) -> AttackState {
     let alone = AttackState {
         ball_is_free: ball_is_free(scene),
-        shot_at_goal: players(scene).any(|it| it.since_shot < SHOT),
+        shot_at_goal: players(scene).any(|it| it.since_shot < SHOT_TIME),
         opponent_has_ball: opponent_has_ball(scene),
         ball_is_out: ball_is_out(scene),
         mate_lead: mate_lead(scene),
@@ -139,7 +139,7 @@ pub fn evaluate(scene: &AttackSituation<'_>) -> AttackState {
     let is_kept_out = scene.field.in_own_area(scene.ball, 0.0);
     let Some((center, center_for)) = parts(scene).filter(|_| !is_kept_out) else { return alone };
     let pays = pass_pays(scene, center_for.place);
-    let is_passed = center.since_pass < PASSED;
+    let is_passed = center.since_pass < PASS_TIME;
     // At the ball, with the goal covered, it shoots as it would alone.
     let is_covered = scene.at_foot && faces_goal(scene) && !path_is_clear(scene);
     // At the ball, facing a partner that no pass can reach, it does not wait.
@@ -148,7 +148,7 @@ pub fn evaluate(scene: &AttackSituation<'_>) -> AttackState {
     let (part, mate) = match (std::ptr::eq(center, &scene.own), std::ptr::eq(center_for, &scene.own)) {
         // The part of the center ends with its pass.
         (true, _) if is_passed => (None, None),
-        _ if !is_passed && (!pays || center.ball_distance > BEGIN) => (None, None),
+        _ if !is_passed && (!pays || center.ball_distance > CENTER_DISTANCE) => (None, None),
         (true, _) if is_blocked => (None, None),
         (true, _) => (Some(AttackRole::Center), Some(center_for.place)),
         (_, true) if is_passed && is_covered => (None, None),
@@ -157,7 +157,7 @@ pub fn evaluate(scene: &AttackSituation<'_>) -> AttackState {
     };
     AttackState {
         center_is_closest: scene.opponents.iter().all(|it| (it - scene.ball).norm() > center.ball_distance),
-        center_for_is_farthest: center_for.ball_distance > center.ball_distance + MARGIN,
+        center_for_is_farthest: center_for.ball_distance > center.ball_distance + CENTER_MARGIN,
         part,
         mate,
         pass_is_open: part == Some(AttackRole::Center) && pass_is_open(scene, center_for.place),
@@ -176,7 +176,7 @@ fn players<'a>(scene: &'a AttackSituation<'_>) -> impl Iterator<Item = &'a Attac
 fn parts<'a>(scene: &'a AttackSituation<'_>) -> Option<(&'a AttackPlayer, &'a AttackPlayer)> {
     let but = |but: &'a AttackPlayer| players(scene).filter(move |it| !std::ptr::eq(*it, but));
     let by_distance = |a: &&AttackPlayer, b: &&AttackPlayer| a.ball_distance.total_cmp(&b.ball_distance);
-    let passers = players(scene).filter(|it| it.since_pass < PASSED);
+    let passers = players(scene).filter(|it| it.since_pass < PASS_TIME);
     if let Some(passer) = passers.min_by(|a, b| a.since_pass.total_cmp(&b.since_pass)) {
         return Some((passer, but(passer).min_by(by_distance)?));
     }
@@ -187,7 +187,7 @@ fn parts<'a>(scene: &'a AttackSituation<'_>) -> Option<(&'a AttackPlayer, &'a At
 /// The way to the place behind the ball, as metres of straight walk.
 fn cost(scene: &AttackSituation<'_>, player: &AttackPlayer) -> f64 {
     let (to_ball, shot) = (scene.ball - player.place, scene.field.goal(Goal::Opponent) - scene.ball);
-    let yields = if player.since_pass < YIELDING { YIELD_COST } else { 0.0 };
+    let yields = if player.since_pass < YIELD { YIELD_COST } else { 0.0 };
     let turn = wrap(angle_of(&to_ball) - player.heading).abs();
     let round = wrap(angle_of(&shot) - angle_of(&to_ball)).abs();
     player.ball_distance + TURN_COST * turn + ROUND_COST * round + player.handicap + yields
@@ -210,18 +210,22 @@ fn ball_is_free(scene: &AttackSituation<'_>) -> bool {
 
 fn opponent_has_ball(scene: &AttackSituation<'_>) -> bool {
     let own = players(scene).map(|it| it.ball_distance).fold(f64::INFINITY, f64::min);
-    scene.opponents.iter().map(|it| (it - scene.ball).norm()).any(|it| it < REACH && it < own - HAS)
+    scene
+        .opponents
+        .iter()
+        .map(|it| (it - scene.ball).norm())
+        .any(|it| it < REACH && it < own - POSSESSION_MARGIN)
 }
 
 fn ball_is_out(scene: &AttackSituation<'_>) -> bool {
     let FieldModel { length, width, .. } = scene.field;
-    let then = scene.ball + scene.rolling * FORESIGHT;
+    let then = scene.ball + scene.rolling * PREDICTION_TIME;
     then.x.abs() > length / 2.0 || then.y.abs() > width / 2.0
 }
 
 fn pass_is_open(scene: &AttackSituation<'_>, receiver: Point2<f64>) -> bool {
     let way = (receiver - scene.ball).norm();
-    (PASS.0..PASS.1).contains(&way) && faces(scene, receiver) && is_free(scene, receiver)
+    (PASS_LENGTH.0..PASS_LENGTH.1).contains(&way) && faces(scene, receiver) && is_free(scene, receiver)
 }
 
 /// Whether a pass is better than a shot: the goal is far, the receiver is not behind the ball, and
@@ -229,11 +233,11 @@ fn pass_is_open(scene: &AttackSituation<'_>, receiver: Point2<f64>) -> bool {
 fn pass_pays(scene: &AttackSituation<'_>, receiver: Point2<f64>) -> bool {
     let (shot, pass) = (scene.field.goal(Goal::Opponent) - scene.ball, receiver - scene.ball);
     let aside = wrap(angle_of(&pass) - angle_of(&shot)).abs();
-    shot.norm() > SHOT_LENGTH && aside < ASIDE && !scene.opponents_stand
+    shot.norm() > SHOT_LENGTH && aside < MAX_PASS_ANGLE && !scene.opponents_stand
 }
 
 /// Greatest angle between a pass and a shot, radians.
-const ASIDE: f64 = 0.7;
+const MAX_PASS_ANGLE: f64 = 0.7;
 
 fn path_is_clear(scene: &AttackSituation<'_>) -> bool {
     faces_goal(scene) && is_free(scene, shot_target(&scene.field, scene.ball, scene.opponents))
@@ -246,11 +250,11 @@ fn faces_goal(scene: &AttackSituation<'_>) -> bool {
 
 /// Whether the player stands at the ball so that a kick goes to the target.
 fn faces(scene: &AttackSituation<'_>, target: Point2<f64>) -> bool {
-    scene.at_foot && wrap(angle_of(&(target - scene.ball)) - scene.own.heading).abs() < FACING
+    scene.at_foot && wrap(angle_of(&(target - scene.ball)) - scene.own.heading).abs() < KICK_HEADING_ERROR
 }
 
 fn is_free(scene: &AttackSituation<'_>, target: Point2<f64>) -> bool {
-    scene.opponents.iter().all(|it| distance_to_segment(*it, scene.ball, target).0 > WAY)
+    scene.opponents.iter().all(|it| distance_to_segment(*it, scene.ball, target).0 > LINE_CLEARANCE)
 }
 
 #[cfg(test)]
@@ -348,7 +352,7 @@ mod tests {
         assert!(it.part == Some(AttackRole::CenterFor) && it.ball_is_passed && it.path_is_clear);
         let it = evaluate(&scene(passer, &[other], &[]));
         assert!(it.part.is_none() && it.ball_is_passed && !it.shot_at_goal, "it has done its part");
-        let forgotten = AttackPlayer { since_pass: PASSED, ..player(0.9, 0.5) };
+        let forgotten = AttackPlayer { since_pass: PASS_TIME, ..player(0.9, 0.5) };
         let it = evaluate(&scene(forgotten, &[other], &[]));
         assert!(it.part == Some(AttackRole::CenterFor) && !it.ball_is_passed);
     }

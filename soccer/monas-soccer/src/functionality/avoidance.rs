@@ -49,13 +49,13 @@ pub fn keep_out(walk: Walk, field: &FieldModel, field_from_robot: &Isometry2<f64
     } else if here.y.abs() >= field.area_width / 2.0 + AREA_MARGIN {
         velocity.y = 0.0;
     } else {
-        velocity = Vector2::new(LEAVING, 0.0);
+        velocity = Vector2::new(LEAVING_SPEED, 0.0);
     }
     Walk::along(field_from_robot.rotation.inverse() * velocity, walk.turn)
 }
 
 /// Speed with which the area is left, m/s.
-const LEAVING: f64 = 0.3;
+const LEAVING_SPEED: f64 = 0.3;
 
 #[cfg(test)]
 mod tests {

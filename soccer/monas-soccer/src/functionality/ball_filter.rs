@@ -105,14 +105,14 @@ struct TrackMatch {
 
 /// The square of the Mahalanobis distance beyond which a sighting is an outlier: 99.9 % of correct
 /// ones are below (χ², 2 degrees of freedom).
-const GATE: f64 = 13.8;
+const GATE_DISTANCE: f64 = 13.8;
 /// Least standard deviation of a position, metres.
 const LEAST_NOISE: f64 = 0.01;
 /// Number of pictures in which a candidate must be seen again.
-const CONFIRMATION: u32 = 4;
+const CONFIRMING_PICTURES: u32 = 4;
 /// Number of pictures without the ball after which it must be seen twice again: its position is so
 /// uncertain that false sightings fit.
-const UNCERTAIN: u32 = 30;
+const UNSEEN_PICTURES: u32 = 30;
 
 impl BallFilter {
     /// A filter without an estimate.
@@ -142,13 +142,13 @@ impl BallFilter {
         for track in [&mut self.ball, &mut self.candidate].into_iter().flatten() {
             track.unseen += 1;
         }
-        self.candidate = self.candidate.filter(|candidate| candidate.unseen <= CONFIRMATION);
+        self.candidate = self.candidate.filter(|candidate| candidate.unseen <= CONFIRMING_PICTURES);
         let fit = |track: &Track| {
             let fits = seen.clone().filter_map(|sighting| self.fit(track, sighting, age));
             let best = fits.min_by(|one, other| one.mismatch.total_cmp(&other.mismatch));
-            best.filter(|best| best.mismatch <= GATE)
+            best.filter(|best| best.mismatch <= GATE_DISTANCE)
         };
-        let certain = self.ball.filter(|ball| ball.unseen <= UNCERTAIN);
+        let certain = self.ball.filter(|ball| ball.unseen <= UNSEEN_PICTURES);
         let seen_again = |track: Option<Track>| track.and_then(|track| Some(track.corrected(&fit(&track)?)));
         if let Some(ball) = seen_again(certain).or_else(|| seen_again(self.candidate)) {
             (self.ball, self.candidate) = (Some(ball), None);
@@ -318,13 +318,13 @@ mod tests {
         filter.predict(FRAME, &Isometry2::identity());
         assert!(!show(&mut filter, &[ball]));
         assert_eq!(filter.estimate(), None);
-        (1..CONFIRMATION).for_each(|_| assert!(!show(&mut filter, nothing)));
+        (1..CONFIRMING_PICTURES).for_each(|_| assert!(!show(&mut filter, nothing)));
         assert!(show(&mut filter, &[ball]), "seen again within a few pictures");
         assert_at(&filter, ball);
         filter.forget();
         assert_eq!(filter.estimate(), None);
         assert!(!show(&mut filter, &[ball]));
-        (0..CONFIRMATION).for_each(|_| assert!(!show(&mut filter, nothing)));
+        (0..CONFIRMING_PICTURES).for_each(|_| assert!(!show(&mut filter, nothing)));
         assert!(!show(&mut filter, &[ball]), "too late");
         assert!(!show(&mut filter, &[Point2::new(2.0, 1.0)]), "elsewhere");
         assert_eq!(filter.estimate(), None);
@@ -408,7 +408,7 @@ mod tests {
     fn a_ball_out_of_sight_is_believed_again_when_it_is_seen_twice() {
         let ball = Point2::new(1.0, 0.0);
         let mut filter = believer(ball);
-        for _ in 0..=UNCERTAIN {
+        for _ in 0..=UNSEEN_PICTURES {
             show(&mut filter, &[]);
             filter.predict(FRAME, &Isometry2::identity());
         }

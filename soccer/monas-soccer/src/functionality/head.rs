@@ -40,8 +40,8 @@ impl Default for HeadController {
 }
 
 /// Limits of the neck joints.
-const YAW: f64 = 2.0;
-const PITCH: (f64, f64) = (-0.6, 0.5);
+const MAX_YAW: f64 = 2.0;
+const PITCH_RANGE: (f64, f64) = (-0.6, 0.5);
 
 impl HeadController {
     /// The gaze that centres the view on a point of the ground, given in the robot's frame.
@@ -49,8 +49,8 @@ impl HeadController {
         let distance = point.coords.norm();
         let below = libm::atan2(self.eye_height, distance);
         Gaze {
-            yaw: libm::atan2(point.y, point.x).clamp(-YAW, YAW),
-            pitch: (below - self.view_below).clamp(PITCH.0, PITCH.1),
+            yaw: libm::atan2(point.y, point.x).clamp(-MAX_YAW, MAX_YAW),
+            pitch: (below - self.view_below).clamp(PITCH_RANGE.0, PITCH_RANGE.1),
         }
     }
 
@@ -84,7 +84,7 @@ mod tests {
         let far = head.look_at(Point2::new(3.0, 1.0));
         assert!(near.pitch > 0.45 && far.pitch < 0.0, "{near:?} {far:?}");
         assert!((far.yaw - libm::atan2(1.0, 3.0)).abs() < 1e-12);
-        assert_eq!(head.look_at(Point2::new(-1.0, 0.0)).yaw, YAW);
+        assert_eq!(head.look_at(Point2::new(-1.0, 0.0)).yaw, MAX_YAW);
     }
 
     #[test]

@@ -33,9 +33,9 @@ pub fn crossing(position: Point2<f64>, velocity: Vector2<f64>, deceleration: f64
 }
 
 /// Speed from which on a ball rolls, m/s: a slower one may be noise.
-const ROLLS: f64 = 0.7;
+const MIN_ROLLING_SPEED: f64 = 0.7;
 /// Interval of the search for the place at which a ball is met, seconds.
-const INTERVAL: f64 = 0.1;
+const SEARCH_INTERVAL: f64 = 0.1;
 
 /// The first point at which a robot that walks with `walk` m/s meets a rolling ball, in the robot's
 /// frame; the position of the ball when it stops, or after `foresight` seconds, if it is not met
@@ -50,14 +50,14 @@ pub fn meeting_place(
     foresight: f64,
 ) -> Point2<f64> {
     let speed = velocity.norm();
-    if speed < ROLLS {
+    if speed < MIN_ROLLING_SPEED {
         return position;
     }
     let last = if deceleration > 0.0 { foresight.min(speed / deceleration) } else { foresight };
     let at = |time: f64| position + velocity * (time - deceleration * time * time / (2.0 * speed));
     let mut time = 0.0;
     while time < last && at(time).coords.norm() > walk * time {
-        time += INTERVAL;
+        time += SEARCH_INTERVAL;
     }
     at(time.min(last))
 }

@@ -11,40 +11,40 @@ use super::geometry::{angle_of, heading, pose, wrap};
 use super::walk::{Walk, stride_to, walk_to};
 
 /// Number of the goalkeeper.
-const GOALKEEPER: u32 = 1;
+const GOALKEEPER_NUMBER: u32 = 1;
 /// Distance from the ball of the player that kicks off, metres.
 const BEFORE_BALL: f64 = 0.3;
 /// Distance that the others keep from the centre circle and from the own goal area, metres: the
 /// radius of a robot and a margin.
-const CLEAR: f64 = 0.21;
+const LINE_CLEARANCE: f64 = 0.21;
 /// Distance of the goalkeeper from its goal line, metres.
 const BEFORE_LINE: f64 = 0.13;
 /// Places of field players, as parts of half the length and half the width towards the own goal.
 const PLACES: [(f64, f64); 5] = [(0.35, 0.45), (0.35, -0.45), (0.6, 0.0), (0.55, 0.75), (0.55, -0.75)];
 /// Errors of place, metres, and heading, radians, below which a robot stands.
-const CONTENT: (f64, f64) = (0.12, 0.2);
+const POSE_TOLERANCE: (f64, f64) = (0.12, 0.2);
 /// Confidence of the pose below which a robot turns around for landmarks before it walks.
-const UNSURE: f64 = 0.2;
+const MIN_CONFIDENCE: f64 = 0.2;
 /// The turn with which it looks around, rad/s, and how long: a whole turn.
 const LOOK_AROUND: f64 = 0.6;
 const LOOK_TIME: Duration = Duration::from_millis(10_500);
 /// Time without a call after which a call begins a new walk.
-const PAUSE: Duration = Duration::from_secs(1);
+const CALL_TIMEOUT: Duration = Duration::from_secs(1);
 /// Distance below which a robot turns to its final heading while it walks, metres.
-const ARRIVAL: f64 = 0.4;
+const ARRIVAL_DISTANCE: f64 = 0.4;
 
 /// The place of a player for a kick-off: in the own half, facing the centre, and outside the centre
 /// circle unless it kicks off, which the field player with the lowest number does.
 pub fn kick_off_place(field: &FieldModel, number: u32, kicks_off: bool) -> Isometry2<f64> {
-    let outside = field.circle_radius + CLEAR;
+    let outside = field.circle_radius + LINE_CLEARANCE;
     let own_goal = field.goal(Goal::Own);
     let place = match number {
-        GOALKEEPER => Point2::new(own_goal.x + BEFORE_LINE, 0.0),
+        GOALKEEPER_NUMBER => Point2::new(own_goal.x + BEFORE_LINE, 0.0),
         2 if kicks_off => Point2::new(-BEFORE_BALL, 0.0),
         2 => Point2::new(-outside, 0.0),
         _ => {
             let (x, y) = PLACES[(number.max(3) - 3) as usize % PLACES.len()];
-            let x = (-x * field.length / 2.0).max(field.area_front() + CLEAR);
+            let x = (-x * field.length / 2.0).max(field.area_front() + LINE_CLEARANCE);
             let place = Point2::new(x, y * field.width / 2.0);
             place * (outside / place.coords.norm()).max(1.0)
         }
@@ -70,12 +70,12 @@ impl KickOffWalk {
         field_from_place: &Isometry2<f64>,
         robots: &[Point2<f64>],
     ) -> Walk {
-        if now.since(self.called_at) > PAUSE {
+        if now.since(self.called_at) > CALL_TIMEOUT {
             self.began_at = now;
         }
         self.called_at = now;
         match pose {
-            Some((field_from_robot, confidence)) if confidence > UNSURE => {
+            Some((field_from_robot, confidence)) if confidence > MIN_CONFIDENCE => {
                 walk_to_kick_off(&field_from_robot, field_from_place, robots)
             }
             _ if now.since(self.began_at) < LOOK_TIME => Walk::turning(LOOK_AROUND),
@@ -92,10 +92,10 @@ fn walk_to_kick_off(
     let robot_from_place = field_from_robot.inverse() * field_from_place;
     let place = Point2::from(robot_from_place.translation.vector);
     let (way, off) = (place.coords.norm(), wrap(heading(&robot_from_place)));
-    if way <= CONTENT.0 {
-        return if off.abs() <= CONTENT.1 { Walk::STILL } else { walk_to(Point2::origin(), 0.0, off) };
+    if way <= POSE_TOLERANCE.0 {
+        return if off.abs() <= POSE_TOLERANCE.1 { Walk::STILL } else { walk_to(Point2::origin(), 0.0, off) };
     }
-    if way < ARRIVAL {
+    if way < ARRIVAL_DISTANCE {
         return walk_to(place, way, off);
     }
     let ball = field_from_robot.inverse_transform_point(&Point2::origin());

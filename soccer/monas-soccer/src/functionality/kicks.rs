@@ -5,7 +5,7 @@ use std::time::Duration;
 use narukom::Timestamp;
 
 /// Time from the request of a kick until the foot hits the ball.
-const STRIKE: Duration = Duration::from_millis(800);
+const STRIKE_TIME: Duration = Duration::from_millis(800);
 
 /// The kicks of a player.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
@@ -26,7 +26,7 @@ impl Kicks {
             self.under_way = Some((now, is_pass));
         }
         if let Some((since, is_pass)) = self.under_way
-            && now.since(since) >= STRIKE
+            && now.since(since) >= STRIKE_TIME
         {
             self.under_way = None;
             *(if is_pass { &mut self.passed_at } else { &mut self.shot_at }) = Some(now);

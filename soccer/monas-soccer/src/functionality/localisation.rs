@@ -42,23 +42,23 @@ struct PoseHypothesis {
 }
 
 /// The most hypotheses.
-const MOST: usize = 12;
+const MAX_HYPOTHESES: usize = 12;
 /// Fraction of outliers among the sightings: the least likelihood.
-const OUTLIER: f64 = 0.03;
+const OUTLIER_FRACTION: f64 = 0.03;
 /// Weight of a new hypothesis, and the least weight of one that is kept.
 const NEW_WEIGHT: f64 = 0.02;
 const LEAST_WEIGHT: f64 = 0.002;
 /// Difference below which two hypotheses are one: metres and radians.
-const SAME: (f64, f64) = (0.3, 0.25);
+const MERGE_DISTANCE: (f64, f64) = (0.3, 0.25);
 /// Difference below which a hypothesis explains a pose from two landmarks, in metres, per metre of
 /// distance, and in radians.
-const NEAR: (f64, f64, f64) = (0.3, 0.15, 0.4);
+const EXPLAINED_DIFFERENCE: (f64, f64, f64) = (0.3, 0.15, 0.4);
 /// Carpet around the field on which a robot can stand, metres.
-const AROUND: f64 = 0.7;
+const CARPET_BORDER: f64 = 0.7;
 /// Confidence below which any two landmarks give a hypothesis, not only both posts of a goal.
-const LOST: f64 = 0.5;
+const LOST_CONFIDENCE: f64 = 0.5;
 /// Confidence from which the robot knows in which half of the field it is.
-const KNOWN: f64 = 0.8;
+const KNOWN_HALF_CONFIDENCE: f64 = 0.8;
 
 impl Localisation {
     /// Hypotheses of equal weight; at the centre, with no certainty, if there are none.
@@ -70,7 +70,7 @@ impl Localisation {
         }];
         let starts = if starts.is_empty() { &anywhere } else { starts };
         let weight = 1.0 / starts.len() as f64;
-        let mut hypotheses = Vec::with_capacity(MOST.max(starts.len()) + 1);
+        let mut hypotheses = Vec::with_capacity(MAX_HYPOTHESES.max(starts.len()) + 1);
         hypotheses
             .extend(starts.iter().map(|start| PoseHypothesis { filter: PoseFilter::new(start), weight }));
         let anchors = starts.iter().map(|start| start.field_from_robot).collect();
@@ -96,13 +96,13 @@ impl Localisation {
             self.do_goals_look_alike |= matches!(sighting.landmark, Landmark::PostOfEitherGoal(_));
             for hypothesis in &mut self.hypotheses {
                 let likelihood = hypothesis.filter.correct(&self.model, field, sighting);
-                hypothesis.weight *= likelihood.max(OUTLIER);
+                hypothesis.weight *= likelihood.max(OUTLIER_FRACTION);
             }
             // In between, so that many sightings do not lead to a weight of zero.
             self.normalise();
         }
         self.merge();
-        let is_lost = self.confidence() < LOST;
+        let is_lost = self.confidence() < LOST_CONFIDENCE;
         for (index, one) in seen.iter().enumerate() {
             for other in &seen[index + 1..] {
                 if is_lost || are_posts_of_one_goal(one, other) {
@@ -118,7 +118,7 @@ impl Localisation {
         for line in seen {
             for hypothesis in &mut self.hypotheses {
                 let likelihood = hypothesis.filter.correct_by_line(&self.model, field, &line);
-                hypothesis.weight *= likelihood.max(OUTLIER);
+                hypothesis.weight *= likelihood.max(OUTLIER_FRACTION);
             }
             self.normalise();
         }
@@ -162,7 +162,8 @@ impl Localisation {
         for index in 0..self.hypotheses.len() {
             let pose = *self.hypotheses[index].filter.field_from_robot();
             let weight = self.hypotheses[index].weight;
-            let known = self.hypotheses[..kept].iter_mut().find(|it| is_near(&it.filter, &pose, SAME));
+            let known =
+                self.hypotheses[..kept].iter_mut().find(|it| is_near(&it.filter, &pose, MERGE_DISTANCE));
             match known {
                 Some(known) => known.weight += weight,
                 None => {
@@ -177,9 +178,9 @@ impl Localisation {
     fn prune(&mut self) {
         self.hypotheses.sort_by(|a, b| b.weight.total_cmp(&a.weight));
         let heavy = self.hypotheses.iter().take_while(|it| it.weight >= LEAST_WEIGHT).count();
-        self.hypotheses.truncate(heavy.clamp(1, MOST));
+        self.hypotheses.truncate(heavy.clamp(1, MAX_HYPOTHESES));
         self.normalise();
-        if self.confidence() >= KNOWN {
+        if self.confidence() >= KNOWN_HALF_CONFIDENCE {
             let pose = self.field_from_robot();
             self.anchors.clear();
             self.anchors.push(pose);
@@ -214,13 +215,13 @@ impl Localisation {
     /// Adds a hypothesis, unless one explains it or it is off the carpet.
     fn propose(&mut self, field: &FieldModel, pose: Isometry2<f64>, distance: f64) {
         let place = pose.translation.vector;
-        let is_on_carpet =
-            place.x.abs() < field.length / 2.0 + AROUND && place.y.abs() < field.width / 2.0 + AROUND;
-        let near = (NEAR.0 + NEAR.1 * distance, NEAR.2);
+        let is_on_carpet = place.x.abs() < field.length / 2.0 + CARPET_BORDER
+            && place.y.abs() < field.width / 2.0 + CARPET_BORDER;
+        let near = (EXPLAINED_DIFFERENCE.0 + EXPLAINED_DIFFERENCE.1 * distance, EXPLAINED_DIFFERENCE.2);
         let is_known = self.hypotheses.iter().any(|it| is_near(&it.filter, &pose, near));
         let is_turned = self.do_goals_look_alike && self.way_to(&turned(&pose)) < self.way_to(&pose);
         // One more than the most has room: `prune` drops the lightest.
-        if !is_on_carpet || is_known || is_turned || self.hypotheses.len() > MOST {
+        if !is_on_carpet || is_known || is_turned || self.hypotheses.len() > MAX_HYPOTHESES {
             return;
         }
         let start = PoseEstimate {
@@ -408,7 +409,7 @@ mod tests {
         }
         assert!(error(&filter, &carried) < 0.1, "{:?}", filter.field_from_robot());
         let twin = turned(&carried);
-        let is_twin = |it: &PoseHypothesis| is_near(&it.filter, &twin, SAME);
+        let is_twin = |it: &PoseHypothesis| is_near(&it.filter, &twin, MERGE_DISTANCE);
         assert!(!filter.hypotheses.iter().any(is_twin), "{:?}", filter.hypotheses);
     }
 

@@ -103,9 +103,9 @@ pub struct MotionCommand {
 }
 
 /// Age at which a request expires.
-const FRESH: Duration = Duration::from_millis(500);
+const MAX_REQUEST_AGE: Duration = Duration::from_millis(500);
 /// Time without a report of the end of a skill after which it counts as lost.
-const TIMEOUT: Duration = Duration::from_secs(10);
+const SKILL_TIMEOUT: Duration = Duration::from_secs(10);
 
 /// The arbiter between behaviours and body. [`MotionArbiter::step`] is called once per cycle.
 #[derive(Clone, Debug)]
@@ -170,7 +170,7 @@ impl MotionArbiter {
 
     fn finish_skill(&mut self, now: Timestamp, report: BodyReport) {
         let ended = report.skill_done >= self.order.skill_number;
-        let lost = self.under_way.is_some_and(|since| now.since(since) > TIMEOUT);
+        let lost = self.under_way.is_some_and(|since| now.since(since) > SKILL_TIMEOUT);
         if ended || lost || report.posture == Posture::Lifted {
             self.under_way = None;
             let end = report.skill_end.filter(|_| ended).unwrap_or(SkillEnd::Interrupted);
@@ -190,7 +190,7 @@ impl MotionArbiter {
 
     fn serve(&mut self, now: Timestamp, report: BodyReport, request: PendingRequest, allowed: bool) {
         let ready = self.under_way.is_none() && report.posture == Posture::Upright;
-        let heard = allowed && request.age <= FRESH;
+        let heard = allowed && request.age <= MAX_REQUEST_AGE;
         match request.wish {
             DesiredMotion::Skill(skill) if self.is_new(request.number) => match heard && ready {
                 true => {
@@ -222,7 +222,7 @@ mod tests {
     use super::*;
 
     const GAIT: GaitLimits = GaitLimits { forward: 0.3, backward: 0.1, sideways: 0.1, turn: 1.0 };
-    const UPRIGHT: BodyReport = BodyReport { posture: Posture::Upright, skill_done: 0, skill_end: None };
+    const UPRIGHT_BODY: BodyReport = BodyReport { posture: Posture::Upright, skill_done: 0, skill_end: None };
 
     fn report(posture: Posture, skill_done: u64) -> BodyReport {
         BodyReport { posture, skill_done, skill_end: (skill_done > 0).then_some(SkillEnd::Performed) }
@@ -243,26 +243,29 @@ mod tests {
     #[test]
     fn a_walk_is_passed_on_within_the_gait() {
         let mut motion = MotionArbiter::new(GAIT);
-        assert_eq!(motion.step(at(0), UPRIGHT, request(ahead(), 0), true).walk.ahead, 0.2);
+        assert_eq!(motion.step(at(0), UPRIGHT_BODY, request(ahead(), 0), true).walk.ahead, 0.2);
         let fast = DesiredMotion::Walk(Walk { ahead: 9.0, ..Walk::STILL });
-        assert_eq!(motion.step(at(100), UPRIGHT, request(fast, 0), true).walk.ahead, 0.3);
-        assert_eq!(motion.step(at(200), UPRIGHT, request(DesiredMotion::Stand, 0), true).walk, Walk::STILL);
+        assert_eq!(motion.step(at(100), UPRIGHT_BODY, request(fast, 0), true).walk.ahead, 0.3);
+        assert_eq!(
+            motion.step(at(200), UPRIGHT_BODY, request(DesiredMotion::Stand, 0), true).walk,
+            Walk::STILL
+        );
     }
 
     #[test]
     fn without_leave_or_a_fresh_request_it_stands_still() {
         let mut motion = MotionArbiter::new(GAIT);
-        assert_eq!(motion.step(at(0), UPRIGHT, request(ahead(), 0), false).walk, Walk::STILL);
+        assert_eq!(motion.step(at(0), UPRIGHT_BODY, request(ahead(), 0), false).walk, Walk::STILL);
         let old = PendingRequest { age: Duration::from_millis(501), ..request(ahead(), 0).unwrap() };
-        assert_eq!(motion.step(at(100), UPRIGHT, Some(old), true).walk, Walk::STILL);
-        assert_eq!(motion.step(at(200), UPRIGHT, None, true).walk, Walk::STILL);
+        assert_eq!(motion.step(at(100), UPRIGHT_BODY, Some(old), true).walk, Walk::STILL);
+        assert_eq!(motion.step(at(200), UPRIGHT_BODY, None, true).walk, Walk::STILL);
     }
 
     #[test]
     fn a_skill_happens_once_and_ends_when_the_body_stands() {
         let mut motion = MotionArbiter::new(GAIT);
         let kick = request(DesiredMotion::Skill(Skill::KickLeft), 1);
-        let order = motion.step(at(0), UPRIGHT, kick, true);
+        let order = motion.step(at(0), UPRIGHT_BODY, kick, true);
         assert_eq!((order.skill, order.skill_number, order.walk), (Some(Skill::KickLeft), 1, Walk::STILL));
         let busy = report(Posture::Busy, 0);
         assert_eq!(motion.step(at(100), busy, kick, true).skill_number, 1);
@@ -278,7 +281,7 @@ mod tests {
     fn a_kick_is_as_soft_as_it_is_requested() {
         let kick = request(DesiredMotion::Skill(Skill::KickLeft), 1).unwrap();
         let mut motion = MotionArbiter::new(GAIT);
-        let order = motion.step(at(0), UPRIGHT, Some(PendingRequest { ball_speed: 0.8, ..kick }), true);
+        let order = motion.step(at(0), UPRIGHT_BODY, Some(PendingRequest { ball_speed: 0.8, ..kick }), true);
         assert_eq!((order.skill, order.ball_speed), (Some(Skill::KickLeft), 0.8));
         let next = PendingRequest { number: 2, ..kick };
         let order = motion.step(at(2000), report(Posture::Upright, 1), Some(next), true);
@@ -289,7 +292,7 @@ mod tests {
     fn a_dive_is_done_after_getting_up() {
         let mut motion = MotionArbiter::new(GAIT);
         let dive = request(DesiredMotion::Skill(Skill::DiveRight), 7);
-        motion.step(at(0), UPRIGHT, dive, true);
+        motion.step(at(0), UPRIGHT_BODY, dive, true);
         let order = motion.step(at(500), report(Posture::Fallen, 1), dive, true);
         assert_eq!((order.skill, order.skill_number), (Some(Skill::StandUp), 2));
         assert_eq!(motion.done(), 0);
@@ -313,7 +316,7 @@ mod tests {
     fn a_skill_that_cannot_be_is_refused() {
         let kick = request(DesiredMotion::Skill(Skill::KickLeft), 3);
         let mut motion = MotionArbiter::new(GAIT);
-        assert_eq!(motion.step(at(0), UPRIGHT, kick, false).skill, None);
+        assert_eq!(motion.step(at(0), UPRIGHT_BODY, kick, false).skill, None);
         assert_eq!(motion.done(), 3);
         let mut motion = MotionArbiter::new(GAIT);
         motion.step(at(0), report(Posture::Fallen, 0), kick, true);
@@ -323,7 +326,7 @@ mod tests {
     #[test]
     fn a_kick_in_which_the_robot_falls_is_interrupted() {
         let mut motion = MotionArbiter::new(GAIT);
-        motion.step(at(0), UPRIGHT, request(DesiredMotion::Skill(Skill::KickLeft), 1), true);
+        motion.step(at(0), UPRIGHT_BODY, request(DesiredMotion::Skill(Skill::KickLeft), 1), true);
         let fell = BodyReport { skill_end: Some(SkillEnd::Interrupted), ..report(Posture::Fallen, 1) };
         motion.step(at(500), fell, None, true);
         motion.step(at(4000), report(Posture::Upright, 2), None, true);
@@ -334,11 +337,11 @@ mod tests {
     fn a_skill_ends_when_the_robot_is_lifted_or_the_body_forgets_it() {
         let kick = request(DesiredMotion::Skill(Skill::KickLeft), 1);
         let mut motion = MotionArbiter::new(GAIT);
-        motion.step(at(0), UPRIGHT, kick, true);
+        motion.step(at(0), UPRIGHT_BODY, kick, true);
         motion.step(at(100), report(Posture::Lifted, 0), kick, false);
         assert_eq!((motion.done(), motion.is_busy()), (1, false));
         let mut motion = MotionArbiter::new(GAIT);
-        motion.step(at(0), UPRIGHT, kick, true);
+        motion.step(at(0), UPRIGHT_BODY, kick, true);
         motion.step(at(10_100), report(Posture::Busy, 0), kick, true);
         assert_eq!((motion.done(), motion.is_busy()), (1, false));
     }

@@ -41,23 +41,23 @@ struct Track {
 }
 
 /// Distance within which two sightings of one colour are the same robot, metres.
-const SAME: f64 = 0.4;
+const MATCHING_DISTANCE: f64 = 0.4;
 /// How long a robot that is not seen again is remembered.
-const MEMORY: Duration = Duration::from_millis(1500);
+const MAX_UNSEEN_TIME: Duration = Duration::from_millis(1500);
 /// Number of pictures in which a robot must be seen again.
-const CONFIRMATION: u32 = 4;
-/// The time in which a robot that plays moves farther than `MOVED`.
-pub const WINDOW: Duration = Duration::from_secs(2);
+const CONFIRMING_PICTURES: u32 = 4;
+/// The time in which a robot that plays moves farther than `MIN_MOTION`.
+pub const MOTION_WINDOW: Duration = Duration::from_secs(2);
 /// Displacement that no error of a measured position explains, metres.
-const MOVED: f64 = 0.4;
+const MIN_MOTION: f64 = 0.4;
 /// Greatest number of robots on a field.
-const MOST: usize = 16;
+const MAX_ROBOTS: usize = 16;
 
 impl Obstacles {
     /// Moves the robot to `old_from_new`, its new pose in its old frame, and forgets what is too
     /// old.
     pub fn advance(&mut self, now: Timestamp, old_from_new: &Isometry2<f64>) {
-        self.seen.retain(|track| now.since(track.obstacle.seen_at) <= MEMORY);
+        self.seen.retain(|track| now.since(track.obstacle.seen_at) <= MAX_UNSEEN_TIME);
         for Track { obstacle, window_position, .. } in &mut self.seen {
             obstacle.position = old_from_new.inverse_transform_point(&obstacle.position);
             *window_position = old_from_new.inverse_transform_point(window_position);
@@ -68,15 +68,16 @@ impl Obstacles {
     /// near enough to be the same.
     pub fn see(&mut self, picture: impl Iterator<Item = Obstacle>) {
         self.seen.iter_mut().for_each(|track| track.unseen += 1);
-        self.seen.retain(|track| track.is_confirmed || track.unseen <= CONFIRMATION);
+        self.seen.retain(|track| track.is_confirmed || track.unseen <= CONFIRMING_PICTURES);
         picture.for_each(|sighting| self.add(sighting));
     }
 
     fn add(&mut self, sighting: Obstacle) {
         let distance = |track: &Track| (track.obstacle.position - sighting.position).norm();
-        let full = self.seen.len() >= MOST;
-        let is_same =
-            |known: &&mut Track| known.obstacle.team_mate == sighting.team_mate && distance(known) < SAME;
+        let full = self.seen.len() >= MAX_ROBOTS;
+        let is_same = |known: &&mut Track| {
+            known.obstacle.team_mate == sighting.team_mate && distance(known) < MATCHING_DISTANCE
+        };
         let same = self.seen.iter_mut().filter(is_same);
         match same.min_by(|a, b| distance(a).total_cmp(&distance(b))) {
             Some(known) => {
@@ -122,8 +123,8 @@ impl Track {
         // A second sighting in the same picture confirms nothing.
         self.is_confirmed |= self.unseen > 0;
         (self.obstacle, self.unseen) = (sighting, 0);
-        let moved = (sighting.position - self.window_position).norm() > MOVED;
-        let is_judged = moved || sighting.seen_at.since(self.window_start) > WINDOW;
+        let moved = (sighting.position - self.window_position).norm() > MIN_MOTION;
+        let is_judged = moved || sighting.seen_at.since(self.window_start) > MOTION_WINDOW;
         if is_judged || !sighting.is_evidence {
             (self.window_position, self.window_start) = (sighting.position, sighting.seen_at);
         }
@@ -163,7 +164,7 @@ mod tests {
         let mut obstacles = Obstacles::default();
         obstacles.see([ghost, ghost].into_iter());
         assert_eq!(obstacles.iter().count(), 0, "one picture confirms nothing");
-        (0..=CONFIRMATION).for_each(|_| obstacles.see([mate].into_iter()));
+        (0..=CONFIRMING_PICTURES).for_each(|_| obstacles.see([mate].into_iter()));
         obstacles.see([confused, ghost].into_iter());
         obstacles.see([mate].into_iter());
         assert_eq!(obstacles.iter().copied().collect::<Vec<_>>(), [mate]);
@@ -216,6 +217,6 @@ mod tests {
         let mut obstacles = Obstacles::default();
         let robots: Vec<_> = (0..100).map(|place| robot(f64::from(place), 0.0, false, 0)).collect();
         show_twice(&mut obstacles, &robots);
-        assert_eq!(obstacles.iter().count(), MOST);
+        assert_eq!(obstacles.iter().count(), MAX_ROBOTS);
     }
 }

@@ -4,7 +4,8 @@ use nalgebra::Point2;
 
 use super::field::FieldModel;
 
-/// Evidence from watched opponents: did each move within [`WINDOW`](super::obstacles::WINDOW)?
+/// Evidence from watched opponents: did each move within
+/// [`MOTION_WINDOW`](super::obstacles::MOTION_WINDOW)?
 ///
 /// Opponents that play often stand for a while, too: at the ball, after a fall, or where they cover
 /// the goal. Over three matches each way, plain attackers moved in 24 % of the windows, and players
@@ -20,25 +21,25 @@ pub struct OpponentMotion {
 /// The weight of a window with motion, in windows without.
 const MOTION_WEIGHT: i32 = 10;
 /// Limits of the evidence, so that opponents that begin or cease to play are recognised.
-const LIMITS: (i32, i32) = (-20, 30);
+const EVIDENCE_LIMITS: (i32, i32) = (-20, 30);
 /// Least evidence with which the opponents count as standing.
-const STANDING: i32 = 5;
+const STANDING_EVIDENCE: i32 = 5;
 
 impl OpponentMotion {
     /// Adds a window of time in which an opponent was watched.
     pub fn observe(&mut self, moved: bool) {
         let change = if moved { -MOTION_WEIGHT } else { 1 };
-        self.still = (self.still + change).clamp(LIMITS.0, LIMITS.1);
+        self.still = (self.still + change).clamp(EVIDENCE_LIMITS.0, EVIDENCE_LIMITS.1);
     }
 
     /// Whether the opponents nearly never moved.
     pub fn stand(self) -> bool {
-        self.still >= STANDING
+        self.still >= STANDING_EVIDENCE
     }
 }
 
 /// Distance up to which a robot's position is known well enough to judge its motion, metres.
-const RANGE: f64 = 2.0;
+const MAX_DISTANCE: f64 = 2.0;
 /// Margin ahead of and beside the opponents' goal in which a robot may be a goalkeeper, metres.
 const AT_GOAL: f64 = 0.9;
 const BESIDE_GOAL: f64 = 0.6;
@@ -48,7 +49,7 @@ const BESIDE_GOAL: f64 = 0.6;
 pub fn is_evidence(field: &FieldModel, in_robot: Point2<f64>, in_field: Point2<f64>) -> bool {
     let is_at_goal =
         in_field.x > field.length / 2.0 - AT_GOAL && in_field.y.abs() < field.goal_width / 2.0 + BESIDE_GOAL;
-    in_robot.coords.norm() <= RANGE && !is_at_goal
+    in_robot.coords.norm() <= MAX_DISTANCE && !is_at_goal
 }
 
 #[cfg(test)]

@@ -85,15 +85,15 @@ pub(super) struct PoseFilter {
 
 /// The square of the Mahalanobis distance beyond which a landmark does not match: 99.9 % of correct
 /// ones are below (χ², 2 degrees of freedom).
-const GATE: f64 = 13.8;
+const GATE_DISTANCE: f64 = 13.8;
 /// The same distance by which the best place of a line must match better than the next.
-const AMBIGUITY: f64 = 4.0;
+const AMBIGUITY_DISTANCE: f64 = 4.0;
 /// How far a line may be seen beyond the ends of the line of the field, metres.
-const BEYOND: f64 = 0.3;
+const MAX_OVERSHOOT: f64 = 0.3;
 /// Number of consecutive mismatches after which the filter increases its uncertainty.
-const DOUBT: u32 = 8;
+const MAX_MISMATCHES: u32 = 8;
 /// Unmodelled change between two sightings, metres and radians; prevents overconfidence.
-const UNMODELLED: (f64, f64) = (0.01, 0.005);
+const PROCESS_NOISE: (f64, f64) = (0.01, 0.005);
 
 impl PoseFilter {
     pub(super) fn new(start: &PoseEstimate) -> PoseFilter {
@@ -113,7 +113,7 @@ impl PoseFilter {
     /// Part of the sightings that match, of the last ones, from 1 to 0: less the nearer the filter
     /// is to doubting its pose.
     pub(super) fn trust(&self) -> f64 {
-        1.0 - f64::from(self.misfits) / f64::from(DOUBT)
+        1.0 - f64::from(self.misfits) / f64::from(MAX_MISMATCHES)
     }
 
     /// The variance of the position, square metres.
@@ -153,13 +153,13 @@ impl PoseFilter {
         field: &FieldModel,
         seen: &LandmarkSighting,
     ) -> f64 {
-        self.disturb(UNMODELLED.0, UNMODELLED.1);
+        self.disturb(PROCESS_NOISE.0, PROCESS_NOISE.1);
         let places = LandmarkPlaces::new(seen.landmark, field);
         let matches = places.as_slice().iter().filter_map(|place| self.fit(model, *place, seen));
         let must_be_unique = !matches!(seen.landmark, Landmark::Post(..));
         match best_match(matches) {
             Some((fit, next)) => {
-                if !must_be_unique || next >= fit.mismatch + AMBIGUITY {
+                if !must_be_unique || next >= fit.mismatch + AMBIGUITY_DISTANCE {
                     self.apply(&fit);
                 }
                 fit.likelihood
@@ -179,12 +179,12 @@ impl PoseFilter {
         field: &FieldModel,
         seen: &LineSighting,
     ) -> f64 {
-        self.disturb(UNMODELLED.0, UNMODELLED.1);
+        self.disturb(PROCESS_NOISE.0, PROCESS_NOISE.1);
         let circle = self.tangent(field.circle_radius, seen);
         let lines = field_lines(field).into_iter().chain(circle);
         let matches = lines.filter_map(|line| self.fit_line(model, &line, seen));
         let Some((fit, next)) = best_match(matches) else { return 0.0 };
-        if next >= fit.mismatch + AMBIGUITY {
+        if next >= fit.mismatch + AMBIGUITY_DISTANCE {
             self.apply(&fit);
         }
         fit.likelihood
@@ -239,7 +239,7 @@ impl PoseFilter {
         let direction = line.along().try_normalize(1e-6)?;
         let normal = Vector2::new(-direction.y, direction.x);
         let place = direction.dot(&(at - line.ends[0]));
-        let half = length / 2.0 - BEYOND;
+        let half = length / 2.0 - MAX_OVERSHOOT;
         if place < half || place > line.along().norm() - half {
             return None;
         }
@@ -286,7 +286,7 @@ impl PoseFilter {
 
     fn misfit(&mut self) {
         self.misfits += 1;
-        if self.misfits >= DOUBT {
+        if self.misfits >= MAX_MISMATCHES {
             self.misfits = 0;
             self.disturb(0.5, 0.5);
         }
@@ -305,7 +305,7 @@ fn best_match(matches: impl Iterator<Item = LandmarkMatch>) -> Option<(LandmarkM
             }
         }
     }
-    best.filter(|fit| fit.mismatch <= GATE).map(|fit| (fit, next))
+    best.filter(|fit| fit.mismatch <= GATE_DISTANCE).map(|fit| (fit, next))
 }
 
 /// The match of a sighting with a landmark, and the resulting correction.

@@ -1,9 +1,9 @@
 //! Which reports a player sends to its team.
 //!
 //! A team has a number of messages for a match. Each player may send `rate` of them a second on
-//! average; what it does not send now it may send later, up to [`SAVED`] messages. The value of a
-//! report is what it adds to the last one: a kick, a ball that was found or lost, a displacement of
-//! robot or ball, and the time passed. With all messages saved a small value suffices; with none
+//! average; what it does not send now it may send later, up to [`MAX_SAVED`] messages. The value of
+//! a report is what it adds to the last one: a kick, a ball that was found or lost, a displacement
+//! of robot or ball, and the time passed. With all messages saved a small value suffices; with none
 //! left, reports follow an even schedule.
 
 use std::time::Duration;
@@ -11,9 +11,9 @@ use std::time::Duration;
 use narukom::Timestamp;
 
 /// The most messages that a player saves.
-const SAVED: f64 = 12.0;
+const MAX_SAVED: f64 = 12.0;
 /// The value of a report that justifies a message while all are saved, and while one is left.
-const WORTH: (f64, f64) = (0.6, 2.0);
+const MIN_VALUE: (f64, f64) = (0.6, 2.0);
 
 /// The messages that a player may send.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -28,7 +28,7 @@ pub struct ReportBudget {
 impl Default for ReportBudget {
     /// The league's 1200 messages in a match of 600 s, shared by two players.
     fn default() -> ReportBudget {
-        ReportBudget { rate: 1.0, saved: SAVED, counted_at: None }
+        ReportBudget { rate: 1.0, saved: MAX_SAVED, counted_at: None }
     }
 }
 
@@ -38,9 +38,9 @@ impl ReportBudget {
     pub fn spend(&mut self, now: Timestamp, worth: f64) -> bool {
         let elapsed = self.counted_at.map_or(Duration::ZERO, |at| now.since(at));
         self.counted_at = Some(now);
-        self.saved = (self.saved + elapsed.as_secs_f64() * self.rate).min(SAVED);
-        let spent = 1.0 - (self.saved / SAVED);
-        let is_sent = self.saved >= 1.0 && worth >= WORTH.0 + (WORTH.1 - WORTH.0) * spent;
+        self.saved = (self.saved + elapsed.as_secs_f64() * self.rate).min(MAX_SAVED);
+        let spent = 1.0 - (self.saved / MAX_SAVED);
+        let is_sent = self.saved >= 1.0 && worth >= MIN_VALUE.0 + (MIN_VALUE.1 - MIN_VALUE.0) * spent;
         if is_sent {
             self.saved -= 1.0;
         }

@@ -5,8 +5,8 @@ use nalgebra::Point2;
 use super::field::{FieldModel, Goal};
 
 /// Distance ahead of the ball of a supporter, metres.
-pub const AHEAD: f64 = 1.0;
-const ASIDE: f64 = 0.85;
+pub const DISTANCE_AHEAD: f64 = 1.0;
+const DISTANCE_ASIDE: f64 = 0.85;
 /// Distance kept from the opponents' goal line, metres.
 const FROM_GOAL_LINE: f64 = 0.8;
 const FROM_TOUCH_LINE: f64 = 0.5;
@@ -16,7 +16,7 @@ const FROM_TOUCH_LINE: f64 = 0.5;
 pub fn support_place(field: &FieldModel, ball: Point2<f64>, player: Point2<f64>, ahead: f64) -> Point2<f64> {
     let x = (ball.x + ahead).min(field.length / 2.0 - FROM_GOAL_LINE);
     let reach = (field.width / 2.0 - FROM_TOUCH_LINE).max(0.0);
-    let y = ball.y + ASIDE.copysign(player.y - ball.y);
+    let y = ball.y + DISTANCE_ASIDE.copysign(player.y - ball.y);
     Point2::new(x, y.clamp(-reach, reach))
 }
 
@@ -40,10 +40,10 @@ mod tests {
 
     #[test]
     fn it_is_ahead_of_the_ball_on_the_players_side() {
-        let place = support_place(&FIELD, Point2::new(0.0, 0.0), Point2::new(-1.0, 0.2), AHEAD);
-        assert_eq!(place, Point2::new(AHEAD, ASIDE));
-        let place = support_place(&FIELD, Point2::new(0.0, 0.0), Point2::new(-1.0, -0.2), AHEAD);
-        assert_eq!(place, Point2::new(AHEAD, -ASIDE));
+        let place = support_place(&FIELD, Point2::new(0.0, 0.0), Point2::new(-1.0, 0.2), DISTANCE_AHEAD);
+        assert_eq!(place, Point2::new(DISTANCE_AHEAD, DISTANCE_ASIDE));
+        let place = support_place(&FIELD, Point2::new(0.0, 0.0), Point2::new(-1.0, -0.2), DISTANCE_AHEAD);
+        assert_eq!(place, Point2::new(DISTANCE_AHEAD, -DISTANCE_ASIDE));
     }
 
     #[test]
@@ -56,7 +56,7 @@ mod tests {
 
     #[test]
     fn it_is_on_the_field_and_not_in_the_goal() {
-        let place = support_place(&FIELD, Point2::new(2.8, 1.9), Point2::new(1.0, 2.0), AHEAD);
+        let place = support_place(&FIELD, Point2::new(2.8, 1.9), Point2::new(1.0, 2.0), DISTANCE_AHEAD);
         assert_eq!(place, Point2::new(2.2, 1.5));
     }
 }

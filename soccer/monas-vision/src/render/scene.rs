@@ -111,7 +111,7 @@ const SHELL: Rgb = [0.74, 0.75, 0.77];
 const DARK: Rgb = [0.06, 0.06, 0.07];
 
 /// Distance of the walls of the room from the centre of the field, m.
-const ROOM: f64 = 7.0;
+const WALL_DISTANCE: f64 = 7.0;
 
 impl Scene {
     /// The colour of carpet, floor or room that a ray meets, and the length of the ray in multiples
@@ -123,8 +123,9 @@ impl Scene {
         shading: &Shading,
     ) -> (Rgb, f64) {
         /// Points nearer to the centre than this are certainly inside the room, m.
-        const INSIDE: f64 = 0.99 * ROOM;
-        let is_inside = |point: &Point3<f64>| point.x * point.x + point.y * point.y < INSIDE * INSIDE;
+        const INSIDE_DISTANCE: f64 = 0.99 * WALL_DISTANCE;
+        let is_inside =
+            |point: &Point3<f64>| point.x * point.x + point.y * point.y < INSIDE_DISTANCE * INSIDE_DISTANCE;
         if ray.z < -1e-6 {
             let length = -origin.z / ray.z;
             let point = origin + ray * length;
@@ -204,7 +205,7 @@ impl Scene {
 
     /// The colour of the wall at a point: panels of many colours, none of them an object's.
     fn room(&self, point: &Point3<f64>) -> Rgb {
-        const PANELS: [Rgb; 8] = [
+        const WALL_COLOURS: [Rgb; 8] = [
             [0.62, 0.60, 0.56],
             [0.48, 0.46, 0.45],
             [0.36, 0.28, 0.24],
@@ -217,8 +218,8 @@ impl Scene {
         let around = libm::atan2(point.y, point.x);
         let panel = (around * 6.0).floor() as i64;
         let level = (point.z * 1.3).floor() as i64;
-        let chosen = (hash(self.variant ^ 0x5eed, panel, level) * PANELS.len() as f64) as usize;
-        PANELS[chosen.min(PANELS.len() - 1)]
+        let chosen = (hash(self.variant ^ 0x5eed, panel, level) * WALL_COLOURS.len() as f64) as usize;
+        WALL_COLOURS[chosen.min(WALL_COLOURS.len() - 1)]
     }
 
     /// Appends ball, goals and robots.
@@ -321,7 +322,7 @@ fn add_lying(robot: &RobotFigure, solids: &mut Vec<Solid>) {
 fn wall(origin: &Point3<f64>, ray: &Vector3<f64>) -> f64 {
     let a = ray.x * ray.x + ray.y * ray.y;
     let b = origin.x * ray.x + origin.y * ray.y;
-    let c = origin.x * origin.x + origin.y * origin.y - ROOM * ROOM;
+    let c = origin.x * origin.x + origin.y * origin.y - WALL_DISTANCE * WALL_DISTANCE;
     let root = (b * b - a * c).max(0.0).sqrt();
     if a < 1e-12 { f64::MAX } else { (root - b) / a }
 }

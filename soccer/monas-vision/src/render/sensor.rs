@@ -113,10 +113,10 @@ struct PixelNoise {
 impl PixelNoise {
     fn new(seed: u64, deviation: f64) -> PixelNoise {
         /// Standard deviation of the sum of four bytes.
-        const DEVIATION: f64 = 147.8;
+        const BYTE_SUM_DEVIATION: f64 = 147.8;
         let mut bytes = [0u8; 32];
         bytes[..8].copy_from_slice(&seed.to_le_bytes());
-        let scale = (deviation / DEVIATION) as f32;
+        let scale = (deviation / BYTE_SUM_DEVIATION) as f32;
         PixelNoise { generator: Pcg64::from_seed(bytes), bits: 0, scale, has_half: false }
     }
 

@@ -123,14 +123,14 @@ impl Pattern {
             Pattern::Plain(colour) => colour,
             Pattern::Patches(base, patch, turn) => {
                 /// Cosine of the radius of a patch: 20 degrees.
-                const EDGE: f64 = 0.94;
+                const PATCH_COSINE: f64 = 0.94;
                 let [about_z, about_x] = turn.map(libm::sincos);
                 let (x, y) = (
                     about_z.1 * normal.x - about_z.0 * normal.y,
                     about_z.0 * normal.x + about_z.1 * normal.y,
                 );
                 let (y, z) = (about_x.1 * y - about_x.0 * normal.z, about_x.0 * y + about_x.1 * normal.z);
-                if nearest_corner(x, y, z) > EDGE { patch } else { base }
+                if nearest_corner(x, y, z) > PATCH_COSINE { patch } else { base }
             }
         }
     }

@@ -9,7 +9,7 @@ use crate::detections::{GroundObject, PixelBox};
 use crate::objects::BallPattern;
 
 /// The most candidates that are checked.
-const MOST: usize = 12;
+const MAX_CANDIDATES: usize = 12;
 
 /// Rays from the centre of a candidate to its edge.
 const RAYS: usize = 32;
@@ -123,7 +123,7 @@ impl BallSearch {
             }
             return;
         }
-        if self.candidates.len() < MOST {
+        if self.candidates.len() < MAX_CANDIDATES {
             self.candidates.push(candidate);
             return;
         }
@@ -139,10 +139,10 @@ impl BallSearch {
     /// encloses. Returns a quality.
     fn check(&mut self, context: &ImageContext<'_>, candidate: BallCandidate) -> Option<(f64, Circle)> {
         /// Least radius at which the patches of a ball are visible, pixels.
-        const PATCHES: f64 = 4.5;
+        const MIN_PATCH_RADIUS: f64 = 4.5;
         let step = context.map.step as f64;
         let radius = f64::from(candidate.radius) * step;
-        if context.objects.ball == BallPattern::BlackAndWhite && radius < PATCHES {
+        if context.objects.ball == BallPattern::BlackAndWhite && radius < MIN_PATCH_RADIUS {
             return None;
         }
         let mut circle = Circle {
@@ -162,7 +162,8 @@ impl BallSearch {
             return None;
         }
         // Most of it is in the image and the patches are visible, or they do not count.
-        let shows_patches = circle.radius >= PATCHES && context.rays_within(&circle) >= 0.7 * RAYS as f64;
+        let shows_patches =
+            circle.radius >= MIN_PATCH_RADIUS && context.rays_within(&circle) >= 0.7 * RAYS as f64;
         if context.objects.ball == BallPattern::BlackAndWhite && !shows_patches {
             return None;
         }

@@ -6,7 +6,7 @@ use crate::colour::ColourClass;
 use crate::detections::GroundPoint;
 
 /// Cells between two columns that are scanned.
-const SPACING: usize = 4;
+const COLUMN_SPACING: usize = 4;
 
 /// The search for the border of the field.
 ///
@@ -34,7 +34,9 @@ impl BorderScan {
         let map = context.map;
         self.raw.clear();
         self.raw.extend(
-            (SPACING / 2..map.columns).step_by(SPACING).map(|column| first_of_field(context, column)),
+            (COLUMN_SPACING / 2..map.columns)
+                .step_by(COLUMN_SPACING)
+                .map(|column| first_of_field(context, column)),
         );
         self.build_hull();
         self.rows.clear();
@@ -50,7 +52,7 @@ impl BorderScan {
             let ((x0, y0), (x1, y1)) = (self.hull[segment], self.hull[segment + 1]);
             let row = y0 + (y1 - y0) * (x.clamp(x0, x1) - x0) / (x1 - x0).max(1.0);
             // Beyond the ends of the hull there is no field.
-            let outside = x + (SPACING as f32) < x0 || x > x1 + SPACING as f32;
+            let outside = x + (COLUMN_SPACING as f32) < x0 || x > x1 + COLUMN_SPACING as f32;
             self.rows.push(if outside { map.rows as f32 } else { row });
         }
         let step = map.step as f64;
@@ -66,7 +68,7 @@ impl BorderScan {
         /// Cells between the end of the carpet and the hull.
         const TOLERANCE: f32 = 1.5;
         let step = context.map.step as f64;
-        let column = index * SPACING + SPACING / 2;
+        let column = index * COLUMN_SPACING + COLUMN_SPACING / 2;
         if row < 2 || (row as f32 - self.row(column)).abs() > TOLERANCE {
             return None;
         }
@@ -86,7 +88,7 @@ impl BorderScan {
                 |at: Option<usize>| at.and_then(|at| self.raw.get(at).copied().flatten()).unwrap_or(own);
             let mut three = [near(index.checked_sub(1)), own, near(Some(index + 1))];
             three.sort_unstable();
-            let point = ((index * SPACING + SPACING / 2) as f32, three[1] as f32);
+            let point = ((index * COLUMN_SPACING + COLUMN_SPACING / 2) as f32, three[1] as f32);
             while let [.., a, b] = self.hull[..] {
                 // Rows grow downwards: the middle point stays if it is above the line.
                 let cross = (b.0 - a.0) * (point.1 - a.1) - (b.1 - a.1) * (point.0 - a.0);
@@ -103,9 +105,9 @@ impl BorderScan {
 /// The row that maximises the carpet cells below it minus the other cells below it.
 fn first_of_field(context: &ImageContext<'_>, column: usize) -> Option<usize> {
     /// Least surplus of carpet, cells.
-    const LEAST: i32 = 5;
+    const MIN_SURPLUS: i32 = 5;
     let map = context.map;
-    let (mut score, mut best, mut row_of_best) = (0, LEAST, None);
+    let (mut score, mut best, mut row_of_best) = (0, MIN_SURPLUS, None);
     for row in (map.horizon(column)..map.rows).rev() {
         score += if map.at(column, row) == ColourClass::Green { 1 } else { -1 };
         if score > best {

@@ -212,7 +212,7 @@ impl LineScan {
 
 fn split_run(run: &[GroundPoint], lines: &mut Vec<LineSegment>) {
     /// Greatest distance of a point from its straight part, pixels.
-    const STRAIGHT: f64 = 2.2;
+    const MAX_LINE_DISTANCE: f64 = 2.2;
     let [first, .., last] = run else { return };
     if run.len() < 4 {
         return;
@@ -221,7 +221,7 @@ fn split_run(run: &[GroundPoint], lines: &mut Vec<LineSegment>) {
         let away = distance_from(first.pixel, last.pixel, run[index].pixel);
         if away > best.1 { (index, away) } else { best }
     });
-    if away > STRAIGHT {
+    if away > MAX_LINE_DISTANCE {
         split_run(&run[..=index], lines);
         split_run(&run[index..], lines);
         return;

@@ -84,10 +84,13 @@ fn scan_rows(
     column: usize,
 ) -> impl Iterator<Item = usize> {
     /// Cells between rows.
-    const SPACING: usize = 3;
+    const ROW_SPACING: usize = 3;
     let (first, spacing) = match class {
         ColourClass::White => (border.row(column) as usize + 1, 1),
-        _ => ((context.map.horizon(column) + SPACING).saturating_sub((ROWS - 1) * SPACING), SPACING),
+        _ => (
+            (context.map.horizon(column) + ROW_SPACING).saturating_sub((ROWS - 1) * ROW_SPACING),
+            ROW_SPACING,
+        ),
     };
     (0..ROWS).map(move |row| first.saturating_add(row * spacing))
 }

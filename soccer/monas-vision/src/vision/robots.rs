@@ -16,10 +16,10 @@ const HALF_DEPTH: f64 = 0.08;
 /// Height of a robot, m (Nao: 0.57).
 const HEIGHT: f64 = 0.57;
 /// Greatest seeming width of an arm, and gap between it and the legs, m.
-const ARM: f64 = 0.17;
+const MAX_ARM_WIDTH: f64 = 0.17;
 const ARM_GAP: f64 = 0.12;
 /// Cells between two columns that are scanned.
-const SPACING: usize = 2;
+const COLUMN_SPACING: usize = 2;
 
 /// The search for other robots.
 #[derive(Clone, Debug, Default)]
@@ -33,7 +33,7 @@ pub(crate) struct RobotScan {
 impl RobotScan {
     pub(crate) fn scan(&mut self, context: &ImageContext<'_>, border: &BorderScan, seen: &mut Detections) {
         self.feet.clear();
-        let columns = (0..context.map.columns).step_by(SPACING);
+        let columns = (0..context.map.columns).step_by(COLUMN_SPACING);
         self.feet.extend(columns.map(|column| {
             let is_post = seen.posts.iter().any(|post| is_beside(context, post, column));
             if is_post { None } else { foot(context, border, column) }
@@ -94,11 +94,11 @@ impl Body {
     /// The body in scanned columns whose lowest foot is given; none if it is something else.
     fn new(context: &ImageContext<'_>, start: usize, end: usize, foot: usize) -> Option<Body> {
         let (map, step) = (context.map, context.map.step as f64);
-        let (left, right) = (start * SPACING, (end * SPACING).min(map.columns));
+        let (left, right) = (start * COLUMN_SPACING, (end * COLUMN_SPACING).min(map.columns));
         let middle = (left + right) as f64 / 2.0;
         let scale = context.camera.scale(middle * step, (foot + 1) as f64 * step, 0.0) / step;
         let width = (right - left) as f64 / scale.max(1e-6);
-        let is_cut = left == 0 || right + SPACING >= map.columns || foot + 2 >= map.rows;
+        let is_cut = left == 0 || right + COLUMN_SPACING >= map.columns || foot + 2 >= map.rows;
         if width < LEAST_WIDTH || (width > MOST_WIDTH && !is_cut) {
             return None;
         }
@@ -115,15 +115,15 @@ impl Body {
     fn stands_out(&self, context: &ImageContext<'_>, feet: &[Option<usize>]) -> bool {
         /// Least change of luma, as a part of that from carpet to white, and of chroma, as a part
         /// of that of the carpet.
-        const LEAST: f32 = 0.3;
+        const MIN_CHANGE: f32 = 0.3;
         let model = context.table.model();
-        let least_luma = LEAST * (model.white_luma - model.green_luma);
+        let least_luma = MIN_CHANGE * (model.white_luma - model.green_luma);
         let chroma = libm::hypotf(model.green[0] - model.white[0], model.green[1] - model.white[1]);
-        let least_chroma = LEAST * chroma * model.green_luma;
+        let least_chroma = MIN_CHANGE * chroma * model.green_luma;
         let (mut sharp, mut all) = (0, 0);
         for (index, foot) in feet.iter().enumerate() {
             let Some(foot) = *foot else { continue };
-            let column = self.left + index * SPACING;
+            let column = self.left + index * COLUMN_SPACING;
             // Two cells away from the foot, so that blur does not matter.
             let above = context.mean_yuv(column, foot.saturating_sub(4)..foot.saturating_sub(1));
             let below = context.mean_yuv(column, foot + 2..foot + 5);
@@ -179,8 +179,8 @@ impl Body {
 /// body, or it is an arm.
 fn is_part_of(context: &ImageContext<'_>, area: &PixelBox, body: &PixelBox) -> bool {
     let is_beside = |gap: f64| area.left <= body.right + gap && area.right >= body.left - gap;
-    let touches = is_beside((2 * SPACING * context.map.step) as f64);
-    let is_narrow = area.right - area.left < ARM * ground_scale(context, area);
+    let touches = is_beside((2 * COLUMN_SPACING * context.map.step) as f64);
+    let is_narrow = area.right - area.left < MAX_ARM_WIDTH * ground_scale(context, area);
     touches || (is_narrow && is_beside(ARM_GAP * ground_scale(context, body)))
 }
 
@@ -209,7 +209,7 @@ fn drop_arms(context: &ImageContext<'_>, robots: &mut Vec<DetectedRobot>) {
         let (arm, body) = (&one.sight.area, &of.sight.area);
         let gap = ARM_GAP * ground_scale(context, body);
         one.sight.distance > of.sight.distance
-            && width(arm) < ARM * ground_scale(context, arm)
+            && width(arm) < MAX_ARM_WIDTH * ground_scale(context, arm)
             && arm.left < body.right + gap
             && arm.right > body.left - gap
     };
@@ -233,7 +233,7 @@ fn is_beside(context: &ImageContext<'_>, post: &GoalPost, column: usize) -> bool
 /// Whether two neighbouring columns show feet at about the same distance.
 fn is_same_body(context: &ImageContext<'_>, index: usize, one: usize, other: usize) -> bool {
     let step = context.map.step as f64;
-    let x = (index * SPACING) as f64 * step;
+    let x = (index * COLUMN_SPACING) as f64 * step;
     let scale = context.camera.scale(x, one.max(other) as f64 * step, 0.0) / step;
     (one.abs_diff(other) as f64) < 0.14 * scale + 2.0
 }

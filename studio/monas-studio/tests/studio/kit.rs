@@ -17,7 +17,7 @@ topic! {
     pub NOTE: State<Log> = "test/note";
 }
 
-pub(crate) const SOON: Duration = Duration::from_secs(20);
+pub(crate) const TIMEOUT: Duration = Duration::from_secs(20);
 
 /// A lamp: START, off, on.
 pub(crate) fn lamp() -> Statechart {
@@ -92,7 +92,7 @@ pub(crate) fn address(studio: &Studio) -> SocketAddr {
 /// The reply to a request, whose head has these lines.
 pub(crate) fn exchange(studio: &Studio, request: &str, lines: &[&str]) -> String {
     let mut stream = TcpStream::connect(address(studio)).unwrap();
-    stream.set_read_timeout(Some(SOON)).unwrap();
+    stream.set_read_timeout(Some(TIMEOUT)).unwrap();
     stream.write_all(format!("{request} HTTP/1.1\r\n{}\r\n\r\n", lines.join("\r\n")).as_bytes()).unwrap();
     let mut reply = Vec::new();
     stream.read_to_end(&mut reply).unwrap();
@@ -115,7 +115,7 @@ impl Viewer {
 
     fn open_at(studio: &Studio, path: &str) -> Result<Viewer, String> {
         let stream = TcpStream::connect(address(studio)).unwrap();
-        stream.set_read_timeout(Some(SOON)).unwrap();
+        stream.set_read_timeout(Some(TIMEOUT)).unwrap();
         let url = format!("ws://{}{path}", address(studio));
         let (socket, _) = client(url, stream).map_err(|error| error.to_string())?;
         Ok(Viewer(socket))

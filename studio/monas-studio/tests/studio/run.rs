@@ -16,7 +16,7 @@ use tungstenite::protocol::frame::coding::CloseCode;
 use tungstenite::{Message, WebSocket};
 use yase::Statechart;
 
-use crate::kit::{NOTE, Notes, SOON, Viewer, address, exchange, lamp};
+use crate::kit::{NOTE, Notes, TIMEOUT, Viewer, address, exchange, lamp};
 
 /// A run of one host with one agent, with its time in nanoseconds.
 struct OneHub([Hub; 1], Arc<AtomicU64>);
@@ -337,7 +337,7 @@ impl FoxgloveClient {
     /// Opens the protocol, with an origin if one is given.
     fn open(studio: &Studio, protocol: &str, origin: Option<&str>) -> Result<FoxgloveClient, String> {
         let stream = TcpStream::connect(address(studio)).unwrap();
-        stream.set_read_timeout(Some(SOON)).unwrap();
+        stream.set_read_timeout(Some(TIMEOUT)).unwrap();
         let mut request = format!("ws://{}/", address(studio)).into_client_request().unwrap();
         request.headers_mut().insert("Sec-WebSocket-Protocol", protocol.parse().unwrap());
         if let Some(origin) = origin {

@@ -11,7 +11,7 @@ use crate::machine::activities::{ActivityState, InvocationPhase};
 use crate::machine::chooser::Chooser;
 use crate::machine::errors::StepError;
 use crate::machine::history::HistoryValue;
-use crate::machine::livelock_limit::MEMORY;
+use crate::machine::livelock_limit::KEPT_TRANSITIONS;
 use crate::machine::machine_state::{FailedGuard, MachineState, PendingInterrupt};
 use crate::machine::queues::{HeldEvent, PoppedEvent};
 use crate::machine::snapshot::{
@@ -322,8 +322,8 @@ impl<'a> SnapshotRestorer<'a> {
         let record = &snapshot.bound;
         let bound = &mut self.run.livelock_limit;
         (bound.micro_steps, bound.instant, bound.steps) = (record.micro_steps, record.instant, record.steps);
-        if record.recent.len() > MEMORY {
-            let text = format!("at most {MEMORY} transitions are remembered");
+        if record.recent.len() > KEPT_TRANSITIONS {
+            let text = format!("at most {KEPT_TRANSITIONS} transitions are remembered");
             self.report_issue(RestoreIssueKind::Contradiction, "bound.recent", text);
         }
         for (index, way) in record.recent.iter().enumerate() {

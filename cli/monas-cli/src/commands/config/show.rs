@@ -13,7 +13,7 @@ use super::ConfigArguments;
 use crate::input::{ConfigurationKind, grammar, kind_of, layers};
 
 /// The widest left column, in characters; longer lines push their origin to the right.
-const WIDEST: usize = 64;
+const MAX_LEFT_WIDTH: usize = 64;
 
 pub(crate) fn execute(
     arguments: &ConfigArguments,
@@ -50,7 +50,7 @@ fn table(out: &mut dyn Write, entries: &[ResolvedEntry]) -> io::Result<()> {
         None => entry.path.clone(),
     };
     let widths = entries.iter().map(|entry| left(entry).chars().count());
-    let width = widths.filter(|width| *width <= WIDEST).max().unwrap_or_default();
+    let width = widths.filter(|width| *width <= MAX_LEFT_WIDTH).max().unwrap_or_default();
     entries.iter().try_for_each(|entry| writeln!(out, "{:width$}  {}", left(entry), entry.origin()))
 }
 

@@ -8,17 +8,17 @@ use super::CheckResult;
 
 const AREA: &str = "clock";
 /// How many waits of 1 ms are measured.
-const WAITS: u32 = 10;
+const MEASURED_WAITS: u32 = 10;
 /// The latest acceptable end of a wait.
-const LATE: Duration = Duration::from_millis(2);
+const MAX_WAIT: Duration = Duration::from_millis(2);
 /// Clock sources that are read without a system call.
-const QUICK: [&str; 4] = ["tsc", "kvm-clock", "arch_sys_counter", "hyperv_clocksource_tsc_page"];
+const FAST_CLOCK_SOURCES: [&str; 4] = ["tsc", "kvm-clock", "arch_sys_counter", "hyperv_clocksource_tsc_page"];
 
 pub(crate) fn findings() -> Vec<CheckResult> {
     let interrupt = Interrupt::default();
     let clock = WallClock::start();
     let mut latest = Duration::ZERO;
-    for number in 1..=WAITS {
+    for number in 1..=MEASURED_WAITS {
         let due = Duration::from_millis(number.into());
         clock.wait_until(due, &interrupt);
         latest = latest.max(clock.elapsed().saturating_sub(due));
@@ -29,8 +29,11 @@ pub(crate) fn findings() -> Vec<CheckResult> {
 }
 
 fn lateness(latest: Duration) -> CheckResult {
-    let what = format!("the latest of {WAITS} waits of 1 ms ended {:.2} ms late", latest.as_secs_f64() * 1e3);
-    match latest <= LATE {
+    let what = format!(
+        "the latest of {MEASURED_WAITS} waits of 1 ms ended {:.2} ms late",
+        latest.as_secs_f64() * 1e3
+    );
+    match latest <= MAX_WAIT {
         true => CheckResult::ok(AREA, what),
         false => CheckResult::warning(
             AREA,
@@ -42,7 +45,7 @@ fn lateness(latest: Duration) -> CheckResult {
 
 fn source_of(name: &str) -> CheckResult {
     let what = format!("the clock source is `{name}`");
-    match QUICK.contains(&name) {
+    match FAST_CLOCK_SOURCES.contains(&name) {
         true => CheckResult::ok(AREA, what),
         false => {
             CheckResult::warning(AREA, what, "it is slow to read; `tsc` is fast if the processor has it")

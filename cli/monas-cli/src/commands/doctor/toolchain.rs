@@ -6,7 +6,7 @@ use super::CheckResult;
 
 const AREA: &str = "toolchain";
 /// The oldest compiler that builds Monas, from the workspace's manifest.
-const OLDEST: &str = env!("CARGO_PKG_RUST_VERSION");
+const MIN_RUST_VERSION: &str = env!("CARGO_PKG_RUST_VERSION");
 
 pub(crate) fn findings() -> Vec<CheckResult> {
     vec![compiler(version("rustc").as_deref()), builder(version("cargo").as_deref())]
@@ -23,11 +23,11 @@ fn compiler(said: Option<&str>) -> CheckResult {
     let install = "install it from https://rustup.rs to build projects; running needs none";
     let Some(said) = said else { return CheckResult::warning(AREA, "there is no rustc", install) };
     let number = said.split_whitespace().nth(1).unwrap_or_default();
-    match numbers(number) >= numbers(OLDEST) {
+    match numbers(number) >= numbers(MIN_RUST_VERSION) {
         true => CheckResult::ok(AREA, said),
         false => CheckResult::error(
             AREA,
-            format!("{said} is older than {OLDEST}"),
+            format!("{said} is older than {MIN_RUST_VERSION}"),
             "`rustup update` installs a newer one",
         ),
     }

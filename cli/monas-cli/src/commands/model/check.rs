@@ -123,7 +123,7 @@ fn checked(path: &Path, settings: &CheckSettings, all: bool) -> CheckReport {
 }
 
 /// The note on checks that Ctrl-C or the time limit ended.
-const STOPPED: &str = ", checks not finished (stopped, or the limit of time; see `--seconds`)";
+const STOPPED_NOTE: &str = ", checks not finished (stopped, or the limit of time; see `--seconds`)";
 
 /// Prints the findings of all files, and, without properties, one line for each file without
 /// errors.
@@ -142,7 +142,7 @@ fn text(
                 console.out,
                 "{}: {what}{}{}, no errors",
                 config::shown_name(path),
-                if report.is_stopped { STOPPED } else { "" },
+                if report.is_stopped { STOPPED_NOTE } else { "" },
                 extent(report.explored.as_ref())
             )?;
         }

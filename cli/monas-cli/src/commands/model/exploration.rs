@@ -11,10 +11,10 @@ use monas_terminal::{CommandFailure, CommandOutput, Format, Interrupt, WallClock
 use yase_explore::{ExplorationProgress, ExplorationStop};
 
 /// The time after which progress is shown first, if standard error is a terminal.
-const QUIET: Duration = Duration::from_secs(1);
+const PROGRESS_DELAY: Duration = Duration::from_secs(1);
 
 /// The time between two updates of it.
-const INTERVAL: Duration = Duration::from_millis(200);
+const PROGRESS_INTERVAL: Duration = Duration::from_millis(200);
 
 /// Limits of an exploration.
 #[derive(Args, Debug)]
@@ -50,7 +50,7 @@ impl ExplorationArguments {
                 .as_ref()
                 .filter(|_| !console.quiet)
                 .map(|bars| bars.add(ProgressBar::new_spinner())),
-            next: Mutex::new(QUIET),
+            next: Mutex::new(PROGRESS_DELAY),
         };
         let (clock, limit) = (WallClock::start(), Duration::from_secs(self.seconds));
         let requested = interrupt.clone();
@@ -90,7 +90,7 @@ impl ProgressDisplay {
             bar.set_message(line.clone());
             bar.tick();
         });
-        *next = elapsed + INTERVAL;
+        *next = elapsed + PROGRESS_INTERVAL;
     }
 }
 

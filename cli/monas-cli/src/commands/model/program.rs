@@ -5,10 +5,10 @@ use monas::Registry;
 use monas_terminal::{CommandFailure, Format};
 
 /// Prefixes of the topics that the runtime, bodies and the simulator publish and read.
-const ELSEWHERE: [&str; 3] = ["monas/", BODY, "sim/"];
+const RUNTIME_PREFIXES: [&str; 3] = ["monas/", BODY_PREFIX, "sim/"];
 
 /// The prefix of the topics of bodies.
-const BODY: &str = "body/";
+const BODY_PREFIX: &str = "body/";
 
 /// The functionality behind an activity of this program: the hardware abstraction layer if it uses
 /// topics of the body, Narukom if it uses others; and its technology, the path of its Rust module.
@@ -17,8 +17,8 @@ pub(crate) fn functionality(registry: &Registry, activity: &str) -> Option<(Stri
     let module = registry.activity_module(activity)?;
     let topics = registry.activity(activity).ok()?.topics();
     let paths = || topics.read_paths().iter().chain(topics.published_paths());
-    let of_body = paths().any(|path| path.starts_with(BODY));
-    let of_others = paths().any(|path| !path.starts_with(BODY));
+    let of_body = paths().any(|path| path.starts_with(BODY_PREFIX));
+    let of_others = paths().any(|path| !path.starts_with(BODY_PREFIX));
     let functionality = match (of_body, of_others) {
         (true, true) => "hardware abstraction layer, Narukom",
         (true, false) => "hardware abstraction layer",
@@ -46,7 +46,7 @@ pub(crate) fn linked() -> Result<ProgramSymbols, CommandFailure> {
         world.ended_by.insert(name.to_owned(), ends.collect());
     }
     let paths = world.vocabulary.topics.iter().map(|topic| topic.path.clone());
-    let is_elsewhere = |path: &String| ELSEWHERE.iter().any(|begin| path.starts_with(begin));
+    let is_elsewhere = |path: &String| RUNTIME_PREFIXES.iter().any(|begin| path.starts_with(begin));
     world.elsewhere = paths.filter(is_elsewhere).collect();
     Ok(world)
 }

@@ -12,7 +12,7 @@ use serde_json::{Value, json};
 use yase::{CompiledChart, Diagnostic, Source};
 
 /// The extension of scenario files.
-const ENDING: &str = "scenario";
+const EXTENSION: &str = "scenario";
 
 /// A scenario with its predecessors.
 pub(crate) struct Scenario {
@@ -141,7 +141,7 @@ pub(crate) fn files(folder: &Path, format: Format) -> Result<Vec<PathBuf>, Comma
     for path in entries {
         if path.is_dir() {
             found.extend(files(&path, format)?);
-        } else if path.extension().is_some_and(|ending| ending == ENDING) {
+        } else if path.extension().is_some_and(|ending| ending == EXTENSION) {
             found.push(path);
         }
     }

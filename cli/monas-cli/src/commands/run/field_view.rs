@@ -15,7 +15,7 @@ const COLUMNS: usize = 79;
 const ROWS: usize = 21;
 
 /// Simulated time between two pictures that do not replace each other.
-const STEP: Duration = Duration::from_secs(1);
+const FRAME_INTERVAL: Duration = Duration::from_secs(1);
 
 /// Shows the field of a match.
 pub(crate) struct FieldView<'a> {
@@ -30,7 +30,7 @@ pub(crate) struct FieldView<'a> {
 impl<'a> FieldView<'a> {
     pub(crate) fn new(console: &'a mut CommandOutput<'_>) -> FieldView<'a> {
         let (repaint, is_coloured) = (Repaint::of_progress(console), console.colour_err);
-        let step = if repaint.replaces() { Duration::ZERO } else { STEP };
+        let step = if repaint.replaces() { Duration::ZERO } else { FRAME_INTERVAL };
         FieldView { out: console.remarks(), repaint, is_coloured, next: Duration::ZERO, step }
     }
 }

@@ -16,9 +16,9 @@ use tempfile::{NamedTempFile, TempDir};
 use super::RunArguments;
 
 /// The variable that names the process of the match to that of a robot.
-const PARENT: &str = "MONAS_MATCH_PROCESS";
+const PROCESS_VARIABLE: &str = "MONAS_MATCH_PROCESS";
 /// Minimum time between two starts of a process that ends by itself.
-const RESTART: Duration = Duration::from_secs(1);
+const RESTART_INTERVAL: Duration = Duration::from_secs(1);
 /// Time limit for the end of a process, whose robot sits down first.
 const END_LIMIT: Duration = Duration::from_secs(8);
 
@@ -142,7 +142,7 @@ impl RobotProcess {
         let RobotProcess { host, process, .. } = self;
         if let Some(running) = process {
             let Some(status) = running.child.try_wait()? else { return Ok(()) };
-            if running.clock.elapsed() < RESTART {
+            if running.clock.elapsed() < RESTART_INTERVAL {
                 return Ok(());
             }
             tracing::warn!(robot = %host, "its process has ended, {status}, and is started again");
@@ -156,7 +156,7 @@ impl RobotProcess {
         let results = NamedTempFile::new()?;
         let child = Command::new(std::env::current_exe()?)
             .args(&self.arguments)
-            .env(PARENT, std::process::id().to_string())
+            .env(PROCESS_VARIABLE, std::process::id().to_string())
             .stdin(Stdio::null())
             .stdout(results.reopen()?)
             // Ctrl-C reaches the match only, which ends its robots in order.
@@ -212,7 +212,7 @@ impl RobotResults {
 
 /// Lets this process end with that of the match that has started it, however that ends.
 pub(super) fn end_with_parent() {
-    let Some(parent) = std::env::var(PARENT).ok().and_then(|id| id.parse().ok()) else { return };
+    let Some(parent) = std::env::var(PROCESS_VARIABLE).ok().and_then(|id| id.parse().ok()) else { return };
     #[cfg(target_os = "linux")]
     if let Err(error) = rustix::process::set_parent_process_death_signal(Some(Signal::TERM)) {
         tracing::warn!("this process will not end with that of the match: {error}");

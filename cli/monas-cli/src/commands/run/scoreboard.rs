@@ -63,7 +63,7 @@ struct Bar {
 impl Bar {
     fn new(bars: &MultiProgress, length: Duration, colour: bool) -> Bar {
         let bar = bars.add(ProgressBar::new(milliseconds(length)));
-        let template = if colour { BAR_IN_COLOUR } else { BAR };
+        let template = if colour { BAR_IN_COLOUR } else { BAR_TEMPLATE };
         // If indicatif rejects the template, its default style shows the same numbers.
         if let Ok(style) = ProgressStyle::with_template(template) {
             bar.set_style(style.progress_chars("━╸ "));
@@ -72,7 +72,7 @@ impl Bar {
     }
 }
 
-const BAR: &str = "{msg}\n{wide_bar} {prefix} {percent:>3} %";
+const BAR_TEMPLATE: &str = "{msg}\n{wide_bar} {prefix} {percent:>3} %";
 const BAR_IN_COLOUR: &str = "{msg:.bold}\n{wide_bar:.green} {prefix} {percent:>3} %";
 
 impl Scoreboard for Bar {
@@ -130,7 +130,8 @@ mod tests {
     #[test]
     fn both_bars_are_understood() {
         assert!(
-            ProgressStyle::with_template(BAR).is_ok() && ProgressStyle::with_template(BAR_IN_COLOUR).is_ok()
+            ProgressStyle::with_template(BAR_TEMPLATE).is_ok()
+                && ProgressStyle::with_template(BAR_IN_COLOUR).is_ok()
         );
     }
 }

@@ -12,7 +12,7 @@ use monas_terminal::{CommandFailure, CommandOutput, Exit, FormatArgument, failed
 use crate::input::{ConfigurationKind, LayerArguments, kind_of, layers, recorded_configuration};
 
 /// The most pictures of an animation.
-const MOST: u128 = 10_000;
+const MAX_PICTURES: u128 = 10_000;
 
 /// Arguments of `monas tape draw`.
 #[derive(Args, Debug)]
@@ -72,7 +72,7 @@ fn times(arguments: &DrawArguments) -> Result<Vec<Duration>, CommandFailure> {
     if from >= to {
         return usage("--from has to be earlier than --to");
     }
-    if every.is_zero() || (to - from).as_nanos() / every.as_nanos() > MOST {
+    if every.is_zero() || (to - from).as_nanos() / every.as_nanos() > MAX_PICTURES {
         return usage("the animation has too many pictures: enlarge --every, or shorten the time");
     }
     let times = std::iter::successors(Some(from), |time| Some(*time + every));

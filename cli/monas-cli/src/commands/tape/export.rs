@@ -12,7 +12,7 @@ use super::arguments::{ExportArguments, ExportFormat};
 use super::value_text;
 
 /// The columns before those of the message's fields.
-const HEADER: [&str; 5] = ["seconds", "host", "publisher", "topic", "sequence"];
+const FIRST_COLUMNS: [&str; 5] = ["seconds", "host", "publisher", "topic", "sequence"];
 
 pub(crate) fn execute(
     arguments: &ExportArguments,
@@ -93,7 +93,7 @@ fn write_table(
     out: &mut dyn Write,
 ) -> Result<(), CommandFailure> {
     let columns = Columns::of(arguments, recording)?;
-    let header = HEADER.iter().map(|name| (*name).to_owned()).chain(columns.names.iter().cloned());
+    let header = FIRST_COLUMNS.iter().map(|name| (*name).to_owned()).chain(columns.names.iter().cloned());
     write_row(out, header)?;
     each(arguments, recording, |message, value| {
         let channel = &message.channel;

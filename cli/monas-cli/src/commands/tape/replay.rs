@@ -84,13 +84,13 @@ struct DifferenceMarks {
 
 impl DifferenceMarks {
     /// The most marks of a timeline.
-    const MOST: usize = 5_000;
+    const MAX_MARKS: usize = 5_000;
 
     fn note(&mut self, difference: &ReplayDifference) {
         let ReplayDifference { host, agent, topic, time, .. } = difference;
         let second = time.as_nanos() / 1_000_000_000;
         let key = (second, host.clone(), agent.clone(), topic.clone());
-        if self.by_second.len() < DifferenceMarks::MOST || self.by_second.contains_key(&key) {
+        if self.by_second.len() < DifferenceMarks::MAX_MARKS || self.by_second.contains_key(&key) {
             let first = self.by_second.entry(key).or_insert(*time);
             *first = (*first).min(*time);
         }

@@ -27,7 +27,8 @@ impl MessageSelection {
         (self.from.map(moment), self.to.map(moment))
     }
 
-    /// Refuses an empty time span, one after the end, and topics and hosts that the tape does not have.
+    /// Refuses an empty time span, one after the end, and topics and hosts that the tape does not
+    /// have.
     pub(crate) fn check(&self, overview: &TapeOverview) -> Result<(), CommandFailure> {
         if let (Some(from), Some(to)) = (self.from, self.to)
             && from >= to

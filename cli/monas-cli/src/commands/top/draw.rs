@@ -14,8 +14,8 @@ use super::sample::{ACTIVITY_HEADER, AGENT_HEADER};
 const DIMMED: Style = Style::new().fg(Color::DarkGray);
 const HEADER: Style = Style::new().add_modifier(Modifier::BOLD);
 const GOOD: Style = Style::new().fg(Color::Green);
-const REMARKABLE: Style = Style::new().fg(Color::Yellow);
-const WRONG: Style = Style::new().fg(Color::Red).add_modifier(Modifier::BOLD);
+const WARNING: Style = Style::new().fg(Color::Yellow);
+const ERROR: Style = Style::new().fg(Color::Red).add_modifier(Modifier::BOLD);
 
 /// The metrics shown, and the selected agent.
 pub(crate) struct Screen {
@@ -73,7 +73,7 @@ impl Screen {
         self.draw_activities(frame, activities);
         self.draw_topics(frame, topics);
         let last = match self.figures.alarms.first() {
-            Some(alarm) => Line::styled(format!("alarm: {alarm}"), WRONG),
+            Some(alarm) => Line::styled(format!("alarm: {alarm}"), ERROR),
             None => Line::styled("up, down: choose an agent   q: quit", DIMMED),
         };
         frame.render_widget(last, keys);
@@ -125,7 +125,7 @@ impl Screen {
 }
 
 /// Blanks between two columns.
-const GAP: u16 = 1;
+const COLUMN_SPACING: u16 = 1;
 
 /// A table of this width, with numbers from a column on. Columns are as wide as their contents.
 fn table<'a, const N: usize>(
@@ -135,13 +135,13 @@ fn table<'a, const N: usize>(
     width: u16,
 ) -> Table<'a> {
     let (cells, styles): (Vec<[String; N]>, Vec<Style>) = rows.unzip();
-    let folded = of_numbers(header, first_number, cells).folded(width.into(), GAP.into());
+    let folded = of_numbers(header, first_number, cells).folded(width.into(), COLUMN_SPACING.into());
     let rows = folded.rows.into_iter().zip(styles).map(|(cells, style)| row(cells, first_number, style));
     let widths =
         folded.widths.iter().map(|&width| Constraint::Length(u16::try_from(width).unwrap_or(u16::MAX)));
     Table::new(rows.collect::<Vec<_>>(), widths.collect::<Vec<_>>())
         .header(row(folded.header, first_number, HEADER))
-        .column_spacing(GAP)
+        .column_spacing(COLUMN_SPACING)
 }
 
 /// A row with numbers from a column on.
@@ -157,8 +157,8 @@ fn row<'a>(cells: FoldedRow, first_number: usize, style: Style) -> Row<'a> {
 fn style_of(agent: &AgentFigures) -> Style {
     let is_remarked = agent.activities.iter().any(|one| one.remark.is_some());
     match agent.entry.state.as_str() {
-        "stuck" | "stopped" => WRONG,
-        _ if agent.overruns > 0 || is_remarked => REMARKABLE,
+        "stuck" | "stopped" => ERROR,
+        _ if agent.overruns > 0 || is_remarked => WARNING,
         "runs" => GOOD,
         _ => DIMMED,
     }
@@ -166,10 +166,10 @@ fn style_of(agent: &AgentFigures) -> Style {
 
 fn style_of_activity(activity: &ActivityFigures) -> Style {
     match activity.remark {
-        Some(ActivityRemark::Stuck | ActivityRemark::Fails) => WRONG,
+        Some(ActivityRemark::Stuck | ActivityRemark::Fails) => ERROR,
         Some(
             ActivityRemark::Burns | ActivityRemark::Blocks | ActivityRemark::Leaks | ActivityRemark::Loops,
-        ) => REMARKABLE,
+        ) => WARNING,
         None => Style::new(),
     }
 }

@@ -8,11 +8,11 @@ use monas_link::control::messages::TopicEntry;
 use super::RunSample;
 
 /// From this load on, in cores, an activity is marked as using a core.
-const BURNS: f64 = 0.8;
+const MIN_BUSY_LOAD: f64 = 0.8;
 /// An activity blocks if its calls take at least this share of the time
-const LONG: f64 = 0.5;
+const MIN_BLOCKING_SHARE: f64 = 0.5;
 /// and use less than this share of their duration as processor time.
-const IDLE: f64 = 0.2;
+const MAX_BLOCKING_CPU_SHARE: f64 = 0.2;
 
 /// The metrics of a run; rates refer to the run's time.
 pub(crate) struct Metrics {
@@ -168,8 +168,12 @@ fn activity(entry: &ActivityEntry, hz: f64, failures: u64, stuck: &str) -> Activ
         _ if failures > 0 => Some(ActivityRemark::Fails),
         _ if entry.grows => Some(ActivityRemark::Leaks),
         _ if entry.loops => Some(ActivityRemark::Loops),
-        (Some(load), _) if load >= BURNS => Some(ActivityRemark::Burns),
-        (Some(load), Some(called)) if called >= LONG && load < IDLE * called => Some(ActivityRemark::Blocks),
+        (Some(load), _) if load >= MIN_BUSY_LOAD => Some(ActivityRemark::Burns),
+        (Some(load), Some(called))
+            if called >= MIN_BLOCKING_SHARE && load < MAX_BLOCKING_CPU_SHARE * called =>
+        {
+            Some(ActivityRemark::Blocks)
+        }
         _ => None,
     };
     ActivityFigures { entry: entry.clone(), hz, load, open_load: 0.0, remark }
@@ -192,7 +196,7 @@ fn open_load<'a>(entry: &'a AgentEntry, before: Option<&AgentEntry>) -> Vec<(&'a
 impl ActivityFigures {
     /// The same with the load of a call that has not returned.
     fn with_open_call(self, open: f64) -> ActivityFigures {
-        let remark = self.remark.or((open >= BURNS).then_some(ActivityRemark::Burns));
+        let remark = self.remark.or((open >= MIN_BUSY_LOAD).then_some(ActivityRemark::Burns));
         ActivityFigures { load: Some(self.load.unwrap_or_default() + open), open_load: open, remark, ..self }
     }
 }

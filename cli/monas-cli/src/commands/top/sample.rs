@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 use super::metrics::{ActivityFigures, AgentFigures, Metrics};
 
 /// How many topics are listed.
-const TOPICS: usize = 10;
+const MAX_TOPICS: usize = 10;
 
 pub(crate) const AGENT_HEADER: [&str; 10] =
     ["host", "agent", "state", "Hz", "of", "core", "mean", "p99", "overruns", "missed"];
@@ -25,7 +25,7 @@ pub(crate) fn text(figures: &Metrics, out: &mut dyn Write) -> io::Result<()> {
     let topics = figures
         .topics
         .iter()
-        .take(TOPICS)
+        .take(MAX_TOPICS)
         .map(|topic| [topic.host.clone(), topic.path.clone(), topic.publisher.clone(), number(topic.hz)]);
     writeln!(out, "\n{}", table::of_numbers(["host", "topic", "by", "Hz"], 3, topics))
 }

@@ -11,10 +11,10 @@ use super::echo::place;
 use crate::remote::{RunSelector, WatchLimits, connection, failure, watch};
 
 /// Time until the first report.
-const FIRST: Duration = Duration::from_millis(80);
+const FIRST_REPORT: Duration = Duration::from_millis(80);
 
 /// Time between later reports.
-const AGAIN: Duration = Duration::from_secs(1);
+const REPORT_INTERVAL: Duration = Duration::from_secs(1);
 
 /// Statistics of the messages of one publisher on one topic.
 struct StreamStatistics {
@@ -84,7 +84,7 @@ fn measure(
     let begin = connection::client(choice)?.describe().map_err(failure(format))?.now;
     let mut streams: BTreeMap<[String; 4], StreamStatistics> = BTreeMap::new();
     let mut lost = 0;
-    let (clock, mut next) = (WallClock::start(), FIRST);
+    let (clock, mut next) = (WallClock::start(), FIRST_REPORT);
     let mut screen = Repaint::of_console(console);
     let exit = watch(pattern, false, limits, choice, console, |seen, console| {
         if let Some(seen) = seen.filter(|seen| seen.local >= begin) {
@@ -96,7 +96,7 @@ fn measure(
             }
         }
         if clock.elapsed() >= next && !streams.is_empty() {
-            next = clock.elapsed() + AGAIN;
+            next = clock.elapsed() + REPORT_INTERVAL;
             print(figure, streams.values(), lost, format, &mut screen, console)?;
         }
         Ok(true)

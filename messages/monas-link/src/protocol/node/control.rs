@@ -14,11 +14,11 @@ use crate::protocol::peers::PeerTopicState;
 use crate::protocol::wire::{Beat, Control, Echo, Head, Hello, Missing, Offer, Refusal};
 
 /// The most bytes of a control besides its parts, and of a part besides its content.
-const FRAME: usize = 24;
-const PART: usize = 6;
+const CONTROL_OVERHEAD: usize = 24;
+const PART_OVERHEAD: usize = 6;
 
 /// The most missing ranges of one topic in a Beat.
-const SPANS: usize = 64;
+const MAX_MISSING_RANGES: usize = 64;
 
 /// The most refusals that wait.
 const REFUSAL_LIMIT: usize = 256;
@@ -67,7 +67,7 @@ struct PacketBuilder(usize);
 
 impl PacketBuilder {
     fn takes(&mut self, part: &impl prost::Message) -> bool {
-        let size = part.encoded_len() + PART;
+        let size = part.encoded_len() + PART_OVERHEAD;
         let fits = size <= self.0;
         self.0 -= if fits { size } else { 0 };
         fits
@@ -78,7 +78,7 @@ impl Node {
     fn room(&self) -> PacketBuilder {
         let limit =
             self.spending.as_ref().map_or(CONTROL_BYTES, |spending| spending.payload().min(CONTROL_BYTES));
-        PacketBuilder(limit.saturating_sub(FRAME))
+        PacketBuilder(limit.saturating_sub(CONTROL_OVERHEAD))
     }
 
     /// Whether each offer fits into a Hello.
@@ -88,7 +88,7 @@ impl Node {
             let offer = Offer { last: u64::MAX, ..self.offer(place) };
             if !self.room().takes(&offer) {
                 let path = &offer.path;
-                let needed = offer.encoded_len() + PART + FRAME;
+                let needed = offer.encoded_len() + PART_OVERHEAD + CONTROL_OVERHEAD;
                 let text =
                     format!("to offer `{path}` takes {needed} bytes, and the budget has packets of {limit}");
                 return Err(Error::new(ErrorKind::Settings, text));
@@ -194,7 +194,7 @@ impl Node {
                 else {
                     continue;
                 };
-                let spans = incoming.missing(SPANS).into_iter();
+                let spans = incoming.missing(MAX_MISSING_RANGES).into_iter();
                 all.extend(spans.map(|(first, last)| Missing {
                     host: peer.name.to_string(),
                     offer: offer as u32,

@@ -10,10 +10,10 @@ use crate::check_settings::CheckedParts;
 use crate::logic::Claim;
 
 /// Nodes with more outgoing transitions than this have only neighbouring ones compared.
-const MOST: usize = 64;
+const MAX_PAIRWISE_TRANSITIONS: usize = 64;
 
 /// The most conflicts of one transition with other regions that are reported.
-const CONFLICTS: usize = 3;
+const MAX_CONFLICTS: usize = 3;
 
 impl GuardCheck<'_> {
     /// M07 and M08.
@@ -26,7 +26,7 @@ impl GuardCheck<'_> {
         let ways: Vec<TransitionId> = ways.collect();
         let mut found = Vec::new();
         for (index, &later) in ways.iter().enumerate() {
-            let earlier = &ways[index.saturating_sub(MOST)..index];
+            let earlier = &ways[index.saturating_sub(MAX_PAIRWISE_TRANSITIONS)..index];
             match self.shadowed_transition(earlier, later) {
                 Some(shadowed) => found.push(shadowed),
                 None => found.extend(earlier.iter().filter_map(|&first| self.overlap(first, later))),
@@ -156,8 +156,9 @@ impl GuardCheck<'_> {
                 None => waiting.iter().copied().collect(),
             };
             let others = others.into_iter().filter(|&other| other != leaving);
-            found
-                .extend(others.filter_map(|staying| self.conflicting_pair(leaving, staying)).take(CONFLICTS));
+            found.extend(
+                others.filter_map(|staying| self.conflicting_pair(leaving, staying)).take(MAX_CONFLICTS),
+            );
         }
         found
     }

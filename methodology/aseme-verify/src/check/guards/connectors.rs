@@ -8,13 +8,13 @@ use super::GuardCheck;
 use crate::logic::{Claim, Satisfiability};
 
 /// Limit on the segments of a path through connectors.
-const LONGEST: usize = 16;
+const MAX_PATH_LENGTH: usize = 16;
 
 /// Limit on the nodes from which a path must continue.
-const MOST: usize = 256;
+const MAX_OPEN_NODES: usize = 256;
 
 /// Limit on the paths out of one node that are compared; beyond it the check says so.
-const COMPARED: usize = 4096;
+const MAX_COMPARED_PATHS: usize = 4096;
 
 impl GuardCheck<'_> {
     /// M05 for a branch, M01 for a START: no outgoing guard covers some cases.
@@ -68,7 +68,7 @@ impl GuardCheck<'_> {
         let mut open: Vec<Vec<TransitionId>> = segments.filter(leads_on).map(|id| vec![id]).collect();
         let mut is_cut = false;
         while let Some(way) = open.pop() {
-            if looked == COMPARED {
+            if looked == MAX_COMPARED_PATHS {
                 is_cut = true;
                 break;
             }
@@ -86,8 +86,8 @@ impl GuardCheck<'_> {
             let is_guarded = way.iter().any(|&id| self.guard(id).is_some());
             let matters = |id: &TransitionId| is_guarded && self.guard(*id).is_some() || leads_on(id);
             let mut segments = self.subject.outgoing(target).iter().copied().filter(matters);
-            if way.len() < LONGEST && looked < COMPARED {
-                let left = COMPARED - looked;
+            if way.len() < MAX_PATH_LENGTH && looked < MAX_COMPARED_PATHS {
+                let left = MAX_COMPARED_PATHS - looked;
                 open.extend(segments.by_ref().take(left).map(|id| [way.as_slice(), &[id]].concat()));
             }
             is_cut |= segments.next().is_some();
@@ -98,7 +98,7 @@ impl GuardCheck<'_> {
 
     fn not_compared(&self, node: NodeId) -> Diagnostic {
         let message = format!(
-            "not all paths through connectors out of `{}` are compared: contradictions beyond {COMPARED} paths or {LONGEST} segments are not found",
+            "not all paths through connectors out of `{}` are compared: contradictions beyond {MAX_COMPARED_PATHS} paths or {MAX_PATH_LENGTH} segments are not found",
             self.subject.path(node)
         );
         let found = Diagnostic::warning("M06", self.subject.places.node(node), message);
@@ -138,7 +138,7 @@ impl GuardCheck<'_> {
         let mut looked = 0;
         while let Some(node) = open.pop() {
             looked += 1;
-            if self.subject.kind(node) == NodeKind::Join || looked > MOST {
+            if self.subject.kind(node) == NodeKind::Join || looked > MAX_OPEN_NODES {
                 return false;
             }
             if !self.is_static(node) {

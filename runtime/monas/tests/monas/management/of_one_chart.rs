@@ -11,7 +11,7 @@ use crate::kit::{Recorder, at, recorder};
 use crate::management::{change, made, refused, settings};
 use crate::taped::{Tape, replay_simulated};
 
-const PATIENCE: Duration = Duration::from_secs(20);
+const TIMEOUT: Duration = Duration::from_secs(20);
 
 /// Both charts call their activity every 100 ms; the list does every 200 ms.
 const AGENT: &str = r#"<agent ThreadFrequency="5">
@@ -230,7 +230,7 @@ fn a_run_with_an_idle_chart_is_replayed() {
 }
 
 fn until(notes: &Receiver<String>, word: &str) {
-    while notes.recv_timeout(PATIENCE).unwrap() != word {}
+    while notes.recv_timeout(TIMEOUT).unwrap() != word {}
 }
 
 #[test]
@@ -249,7 +249,7 @@ fn in_real_time_one_chart_is_idle_and_the_list_and_the_other_go_on() {
     }
     ask(of_chart(Action::StopAgent, "legs.srm"));
     notes.try_iter().for_each(drop);
-    let after: Vec<String> = (0..12).map(|_| notes.recv_timeout(PATIENCE).unwrap()).collect();
+    let after: Vec<String> = (0..12).map(|_| notes.recv_timeout(TIMEOUT).unwrap()).collect();
     assert!(!after.contains(&"Legs 2".to_owned()), "{after:?}");
     assert!(after.contains(&"Head 1".to_owned()) && after.contains(&"List 1".to_owned()), "{after:?}");
     let shown = run.agents(None).unwrap().remove(0);
@@ -258,7 +258,7 @@ fn in_real_time_one_chart_is_idle_and_the_list_and_the_other_go_on() {
     // Both are idle, and so is the agent's list alone what runs.
     ask(of_chart(Action::StopAgent, "2"));
     notes.try_iter().for_each(drop);
-    assert_eq!([0; 3].map(|_| notes.recv_timeout(PATIENCE).unwrap()), ["List 1"; 3]);
+    assert_eq!([0; 3].map(|_| notes.recv_timeout(TIMEOUT).unwrap()), ["List 1"; 3]);
     ask(Change { settings: settings(&[("Head.speed", "7")]), ..of_chart(Action::Set, "2") });
     ask(of_chart(Action::StartAgent, "2"));
     until(&notes, "Head 7");

@@ -14,7 +14,7 @@ use yase::Source;
 
 use crate::management::{change, made, refused, reporting, settings};
 
-const PATIENCE: Duration = Duration::from_secs(20);
+const TIMEOUT: Duration = Duration::from_secs(20);
 
 fn ask(run: &RunHandle, change: Change) -> monas::records::Changed {
     run.change("local", change).unwrap()
@@ -22,7 +22,7 @@ fn ask(run: &RunHandle, change: Change) -> monas::records::Changed {
 
 /// Waits for the next note that is one of these words.
 fn until(notes: &Receiver<String>, word: &str) {
-    while notes.recv_timeout(PATIENCE).unwrap() != word {}
+    while notes.recv_timeout(TIMEOUT).unwrap() != word {}
 }
 
 #[test]

@@ -12,7 +12,7 @@ use narukom::Timestamp;
 use crate::kit::{BALL, Ball};
 use crate::management::{change, made, refused, settings};
 
-const PATIENCE: Duration = Duration::from_secs(20);
+const TIMEOUT: Duration = Duration::from_secs(20);
 
 /// A body that records its walking speed.
 struct Body<F>(F, Anatomy);
@@ -69,10 +69,10 @@ fn a_stuck_cycle_is_reported_and_ends_the_run_with_the_body_unloaded() {
         ..HostConfig::default()
     });
     let running = talws.start().unwrap();
-    while acted.recv_timeout(PATIENCE).unwrap() != 1.0 {}
+    while acted.recv_timeout(TIMEOUT).unwrap() != 1.0 {}
     enter.wait();
     // The body receives the command to stand still, and the run ends, although the thread hangs.
-    while acted.recv_timeout(PATIENCE).unwrap() != 0.0 {}
+    while acted.recv_timeout(TIMEOUT).unwrap() != 0.0 {}
     let statistics = running.wait();
     let stopped = statistics.agents[0].stopped.clone().unwrap();
     assert_eq!(stopped, "activity `Hangs` is stuck in cycle 3");
@@ -116,7 +116,7 @@ fn a_stuck_agent_that_returns_has_stopped_and_can_restart() {
     }
     assert_eq!(state().reason, "activity `closure` was stuck in cycle 1");
     made(&run.change("local", change(Action::StartAgent, "a")).unwrap());
-    while called.recv_timeout(PATIENCE).unwrap() != 3 {}
+    while called.recv_timeout(TIMEOUT).unwrap() != 3 {}
     assert_eq!(running.stop().agents[0].stopped, None);
 }
 
@@ -125,12 +125,12 @@ fn denied_scheduling_is_reported_and_the_agent_runs() {
     let (sender, called) = channel();
     let agent = Agent::new("a", Hz(1000)).activity(move |_: &mut Blackboard| _ = sender.send(()));
     let running = Talws::new().agent(agent.urgency(5, true).cores([0])).start().unwrap();
-    called.recv_timeout(PATIENCE).unwrap();
+    called.recv_timeout(TIMEOUT).unwrap();
     let given = settings(&[("priority", "7"), ("is_real_time", "0")]);
     let changed =
         running.run_handle().change("local", Change { settings: given, ..change(Action::Set, "a") }).unwrap();
     made(&changed);
-    called.recv_timeout(PATIENCE).unwrap();
+    called.recv_timeout(TIMEOUT).unwrap();
     assert_eq!(running.run_handle().agents(None).unwrap()[0].priority, 7);
     running.stop();
 }
@@ -145,7 +145,7 @@ fn overruns_at_ten_kilohertz_cost_only_the_cycles_they_cover() {
         _ = sender.send((calls, began));
     };
     let running = Talws::new().agent(Agent::new("a", Hz(10_000)).activity(works)).start().unwrap();
-    let times: Vec<(u64, Timestamp)> = (0..2000).map(|_| called.recv_timeout(PATIENCE).unwrap()).collect();
+    let times: Vec<(u64, Timestamp)> = (0..2000).map(|_| called.recv_timeout(TIMEOUT).unwrap()).collect();
     let statistics = running.stop();
     let agent = &statistics.agents[0];
     // However busy the machine is: each place on the grid had its cycle, or is counted as missed.
@@ -172,9 +172,9 @@ fn statistics_are_published_as_often_as_they_are_wanted() {
     }));
     let agent = Agent::new("a", Hz(1000)).activity(|_: &mut Blackboard| {}).statistics_every(5);
     let running = talws.agent(agent).start().unwrap();
-    let cycles: Vec<u64> = (0..3).map(|_| notes.recv_timeout(PATIENCE).unwrap().cycles).collect();
+    let cycles: Vec<u64> = (0..3).map(|_| notes.recv_timeout(TIMEOUT).unwrap().cycles).collect();
     assert_eq!(cycles, [5, 10, 15]);
-    let entry = notes.recv_timeout(PATIENCE).unwrap();
+    let entry = notes.recv_timeout(TIMEOUT).unwrap();
     assert_eq!((entry.name.as_str(), entry.activities.len()), ("a", 1));
     assert!(entry.cycle_time.unwrap().p99 > 0.0);
     running.stop();
@@ -195,7 +195,7 @@ fn an_agent_that_runs_freely_has_one_cycle_after_the_other() {
     let (sender, called) = channel();
     let agent = Agent::new("a", Hz(0)).activity(move |_: &mut Blackboard| _ = sender.send(()));
     let running = Talws::new().agent(agent).start().unwrap();
-    (0..1000).for_each(|_| called.recv_timeout(PATIENCE).unwrap());
+    (0..1000).for_each(|_| called.recv_timeout(TIMEOUT).unwrap());
     let statistics = running.stop();
     assert_eq!((statistics.agents[0].overruns, statistics.agents[0].missed), (0, 0));
     let counted = Talws::new().agent(Agent::new("a", Hz(0)).activity(|_: &mut Blackboard| {}));

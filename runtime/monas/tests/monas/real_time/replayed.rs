@@ -12,7 +12,7 @@ use narukom::prost::Message as _;
 use yase::Statechart;
 
 use crate::kit::{BALL, Ball, GAME, Game, NEWS, Phase};
-use crate::real_time::{PATIENCE, chart, next};
+use crate::real_time::{TIMEOUT, chart, next};
 use crate::taped::{Kept, Tape, replay};
 
 /// Throws balls to somewhere.
@@ -267,7 +267,7 @@ fn an_activity_that_waits_for_cancellation_returns_in_a_replay() {
     let mut first = talws(sender);
     first.observe(Box::new(tape.clone()));
     let running = first.start().unwrap();
-    started.recv_timeout(PATIENCE).unwrap();
+    started.recv_timeout(TIMEOUT).unwrap();
     running.stop();
     let messages = tape.kept();
     let outcome = replay(talws(channel().0), &messages).unwrap();
