@@ -76,6 +76,28 @@ function difference(before, after) {
   return { gone: old.filter((line) => !kept.has(line)), added: next.filter((line) => !known.has(line)) };
 }
 
+/** Holds the next request of an edit back, as a slow connection does. Returns a function that sends it. */
+async function holdEdit(page) {
+  await page.evaluate(() => {
+    const { send } = WebSocket.prototype;
+    WebSocket.prototype.send = function (data) {
+      if (/"type":"model edit"/.test(data)) {
+        WebSocket.prototype.send = send;
+        window.sendHeld = () => this.send(data);
+      } else {
+        send.call(this, data);
+      }
+    };
+  });
+  return async () => {
+    await until(page, 'the edit is requested', () => window.sendHeld);
+    await page.evaluate(() => {
+      window.sendHeld();
+      delete window.sendHeld;
+    });
+  };
+}
+
 const TESTS = {
   async 'a role is opened: its text, its chart, and what the check says'({ page, shot }) {
     await until(page, 'the chart', () => document.querySelectorAll('.drawing .node.BASIC').length > 10);
@@ -208,7 +230,13 @@ const TESTS = {
     await near.fill('near = 30 cm');
     await near.press('Enter');
     await untilText(page, 'the text has it', /near = 30 cm\s+# metres/);
+    const sendEdit = await holdEdit(page);
+    await near.fill('near = 32 cm');
+    await near.press('Enter');
     await near.fill('near = 31 cm');
+    await sendEdit();
+    await untilText(page, 'the text has the first edit', /near = 32 cm\s+# metres/);
+    assert.equal(await near.inputValue(), 'near = 31 cm', 'the second edit is still typed');
     await save(page);
     assert.match(saved(folder, 'attacker.srm'), /near = 31 cm {13}# metres; below this distance/);
     await near.fill('near = 30 cm');
@@ -276,7 +304,13 @@ const TESTS = {
 
     await openModel(page, 'attack.aip');
     const liveness = page.locator('[aria-label="Participant center_for"] textarea');
+    const sendEdit = await holdEdit(page);
+    await liveness.fill('WalkTowardsGoal . WalkTowardsBall');
+    await liveness.press('Tab');
     await liveness.fill('WalkTowardsGoal . [WalkTowardsBall . AssessAttack]');
+    await sendEdit();
+    await untilText(page, 'the first formula', /WalkTowardsGoal \. WalkTowardsBall\n/);
+    assert.equal(await liveness.inputValue(), 'WalkTowardsGoal . [WalkTowardsBall . AssessAttack]', 'the second is still typed');
     await liveness.press('Tab');
     await untilText(page, 'the formula', /WalkTowardsGoal \. \[WalkTowardsBall \. AssessAttack\]/);
     await save(page);
@@ -446,7 +480,8 @@ async function swapTest({ page, shot }) {
   await shot('editor-verdict');
   // a role without the running state
   await goBehind(page, 'active = Sensors ω || Vision ω || ');
-  await page.keyboard.type('no');
+  // one edit, so that one undo takes it back
+  await page.keyboard.insertText('no');
   await page.keyboard.press('Escape');
   await page.locator('button', { hasText: 'Dry run' }).click();
   await until(page, 'the refusal', () => /refused: nothing has changed/.test(document.querySelector('.swap')?.textContent ?? ''));
