@@ -1,4 +1,4 @@
-//! How well the robots of a match know where they are.
+//! The errors of the poses that the robots of a match believe.
 
 use std::time::Duration;
 
@@ -10,11 +10,12 @@ use narukom::Timestamp;
 
 use crate::{Variant, root};
 
-/// How often poses are compared with the truth.
+/// The interval of comparisons of poses with the truth.
 const COMPARISON_INTERVAL: Duration = Duration::from_millis(100);
 /// Errors below which a robot knows where it is: metres and radians.
 const KNOWN_POSE_ERROR: (f64, f64) = (0.5, 0.35);
-/// How long a robot that was carried away is watched, and the play between two of them, seconds.
+/// Time for which a robot that was carried away is observed, and the play between two of them,
+/// seconds.
 const WATCHED_TIME: f64 = 30.0;
 const PLAY_TIME: f64 = 5.0;
 

@@ -28,7 +28,8 @@ pub struct MatchRow {
     pub penalties: [u32; 2],
     /// Intentional dives and falls of both goalies, and how many went to the ball's side.
     pub actions: [u32; 2],
-    /// How often a goalie returned between its posts afterwards, and the total time in seconds.
+    /// The number of times that a goalie returned between its posts afterwards, and the total
+    /// time, s.
     pub returns: (u32, f64),
     /// Seconds of play before a robot touched the ball.
     pub first_touch: Option<f64>,

@@ -1,4 +1,4 @@
-//! How the teams of a match play together: passes, kick-offs, crowding, and the time in each state.
+//! Team play in a match: passes, kick-offs, crowding, and the time in each state.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -18,7 +18,7 @@ const KICK_WITHIN: f64 = 3.0;
 /// Passes of a team.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub struct PassCounts {
-    /// How often a robot entered the state in which it passes.
+    /// The number of entries of the state in which a robot passes.
     pub attempts: u32,
     /// Attempts after whose kick a team mate was the next to touch the ball.
     pub completed: u32,
@@ -28,7 +28,7 @@ pub struct PassCounts {
     pub any: u32,
 }
 
-/// How often and how long a robot was in a state.
+/// The number of times that a robot was in a state, and their total duration.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub struct StateTime {
     /// Number of entries.
@@ -37,7 +37,7 @@ pub struct StateTime {
     pub seconds: f64,
 }
 
-/// How the teams of a match play together; blue first.
+/// The team play of both teams of a match; blue first.
 #[derive(Clone, PartialEq, Debug, Default)]
 pub struct TeamPlay {
     /// The passes of each team.

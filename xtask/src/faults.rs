@@ -39,7 +39,7 @@ pub(crate) fn run(root: &Path) -> Result<ExitCode, Box<dyn Error>> {
     Ok(if missed == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 
-/// How a fault is detected, or why it is not. Afterwards the copy is restored.
+/// The check that detects a fault, or the reason why none does. Afterwards the copy is restored.
 fn judge(copy: &WorkspaceCopy, fault: &Fault) -> Result<Result<String, String>, Box<dyn Error>> {
     let broken = patch::apply(&fault.name, &fault.diffs, |file| copy.read(file))?;
     let verdicts = copy.with(&broken, || run_tests(copy, &fault.tests))?;

@@ -40,13 +40,13 @@ pub struct StepLabeler<'w> {
     pub conditions: u32,
     /// The composites in which nothing happens.
     pub idle: Vec<NodeId>,
-    /// How time is counted; `None` ignores time.
+    /// The counting of time; `None` ignores time.
     pub pace: Option<ClockModel>,
     /// Maps a step to its letter.
     pub letter: Box<dyn FnMut(&StepObservation<'_>) -> u64 + 'w>,
 }
 
-/// How time is counted.
+/// The counting of time.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct ClockModel {
     /// The unit of all delays.

@@ -64,7 +64,7 @@ impl ScriptInterner {
         self.texts.get(script.0 as usize).map_or("", String::as_str)
     }
 
-    /// How many scripts there are; their numbers run from 0.
+    /// The number of scripts; their numbers run from 0.
     pub fn len(&self) -> usize {
         self.texts.len()
     }
@@ -196,7 +196,7 @@ impl EventInterner {
         self.entries.get(event.0 as usize).and_then(|entry| entry.topic)
     }
 
-    /// How many events there are; their numbers run from 0.
+    /// The number of events; their numbers run from 0.
     pub fn len(&self) -> usize {
         self.entries.len()
     }

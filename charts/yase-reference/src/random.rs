@@ -47,9 +47,9 @@ pub struct Case {
     pub script: Script,
     /// Its semantics.
     pub semantics: Semantics,
-    /// How the semantics was derived.
+    /// The derivation of the semantics.
     pub(crate) variant: Variant,
-    /// How open choices are resolved.
+    /// The resolution of open choices.
     pub policy: ChoicePolicy,
 }
 

@@ -71,13 +71,13 @@ pub struct Job {
     pub activation: Activation,
     /// The activity.
     pub name: String,
-    /// How long a call takes.
+    /// The duration of a call.
     pub duration: Duration,
     /// When it returns or, if it waits, is called again.
     pub due: Timestamp,
     /// Whether it waits to be called again.
     pub waits: bool,
-    /// How often it was called.
+    /// The number of calls.
     pub calls: u32,
 }
 

@@ -167,7 +167,7 @@ pub trait Host {
     }
 }
 
-/// How an activity returned.
+/// The outcome of a call of an activity.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub enum Outcome {
     /// It has finished: the state is complete.

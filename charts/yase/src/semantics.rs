@@ -44,7 +44,7 @@ pub struct Semantics {
     pub start: InitialState,
     /// The order in which the segments that leave one node are tried.
     pub order: SegmentOrder,
-    /// How the transitions of one micro-step are executed.
+    /// The execution of the transitions of one micro-step.
     pub firing: Firing,
     /// The order in which states are left.
     pub exits: ExitOrder,
@@ -52,11 +52,11 @@ pub struct Semantics {
     pub pool: EventPool,
     /// Which events a trigger matches.
     pub matching: EventMatching,
-    /// How a running activity affects a transition that would leave its state.
+    /// The effect of a running activity on a transition that would leave its state.
     pub on_exit: ActivityOnExit,
     /// The effect of a transition to an active ancestor of its source.
     pub ancestor: TransitionToAncestor,
-    /// How the transitions into a JOIN are taken.
+    /// The selection of the transitions into a JOIN.
     pub join: JoinMode,
     /// When an exit point that several regions reach is passed.
     pub exit_points: ExitPointArrival,
@@ -206,7 +206,7 @@ pub enum SegmentOrder {
     AsModelled,
 }
 
-/// How the transitions of one micro-step are executed.
+/// The execution of the transitions of one micro-step.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
@@ -256,7 +256,7 @@ pub enum EventMatching {
     TokenPrefix,
 }
 
-/// How a running activity affects a transition that would leave its state.
+/// The effect of a running activity on a transition that would leave its state.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
@@ -279,7 +279,7 @@ pub enum TransitionToAncestor {
     Completed,
 }
 
-/// How the transitions into a JOIN are taken.
+/// The selection of the transitions into a JOIN.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]

@@ -88,7 +88,7 @@ pub struct Node {
     pub exit: Vec<Action>,
     /// Events deferred while it is active.
     pub defer: Vec<String>,
-    /// How long its activity takes in simulated time.
+    /// The duration of its activity in simulated time.
     pub duration: Option<Duration>,
 }
 

@@ -7,10 +7,10 @@ use monas::config::{self, AttributeRule, Element, ElementRule, Grammar, Identity
 use yase::Diagnostic;
 use yase::diagnostic::nearest;
 
-/// How long a release must keep running to be accepted, if the file does not say.
+/// Time that a release must keep running to be accepted, by default.
 const DEFAULT_ACCEPTANCE_TIME: &str = "3s";
 
-/// How many recordings are kept, and how many megabytes of them, if the file does not say.
+/// The number of recordings that are kept, and their size in megabytes, by default.
 const DEFAULT_KEPT_RECORDINGS: &str = "20";
 const KEEP_MB: &str = "4000";
 
@@ -39,7 +39,7 @@ pub struct Robot {
     pub(crate) recordings: Option<KeptRecordings>,
 }
 
-/// How many recordings a robot keeps, as [`Robot`] has them from the file.
+/// The limits of the recordings on a robot, as [`Robot`] has them from the file.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub(crate) struct KeptRecordings {
     pub(crate) count: String,

@@ -10,7 +10,7 @@ use crate::{CommandOutput, table};
 pub struct Repaint {
     /// The width of the terminal, if there is one.
     columns: Option<usize>,
-    /// How many rows of the terminal are shown.
+    /// The number of rows of the terminal that are shown.
     rows: usize,
 }
 

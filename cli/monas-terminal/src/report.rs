@@ -12,7 +12,7 @@ use crate::{CommandOutput, Format};
 /// The columns that are shown of a source line with more characters: it is cut around the finding.
 const MAX_SOURCE_COLUMNS: usize = 100;
 
-/// How many columns of a long line are shown before the finding.
+/// The number of columns of a long line that are shown before the finding.
 const COLUMNS_BEFORE_FINDING: usize = 30;
 
 /// The characters of a message or a hint that are shown, at most: a name may fill a whole file.

@@ -24,7 +24,7 @@ pub(crate) struct Recorder<W: Write = Output> {
     chunk_begins: Option<u64>,
     chunk_span: u64,
     messages: u64,
-    /// How many of them are passed to the operating system.
+    /// The number of them that are passed to the operating system.
     flushed: u64,
 }
 

@@ -10,7 +10,7 @@ use crate::tape_file::TapeFile;
 /// The extension of recordings.
 const EXTENSION: &str = "mcap";
 
-/// How many recordings a [`RecordingFolder`] keeps.
+/// The limits of the recordings that a [`RecordingFolder`] keeps.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct RecordingLimits {
     /// The most recordings.

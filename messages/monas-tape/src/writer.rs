@@ -197,7 +197,7 @@ impl TapeWriter {
             match recorder.finish() {
                 Ok((messages, _)) => self.messages += messages,
                 Err(error) => {
-                    // How many are in the file is not known.
+                    // The number in the file is not known.
                     self.first_failure.get_or_insert(error.to_string());
                 }
             }

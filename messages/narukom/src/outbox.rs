@@ -20,7 +20,7 @@ pub(crate) struct Outbox {
     draft: bool,
     /// The number of messages ever written.
     written: u64,
-    /// How many of these were read here before the hub delivered them.
+    /// The number of these that were read here before the hub delivered them.
     seen: Cell<u64>,
     /// Own messages up to this number are not read: the values of another blackboard replaced them.
     hidden: u64,

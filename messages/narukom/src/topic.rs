@@ -32,7 +32,7 @@ pub struct Signal<M>(PhantomData<fn() -> M>);
 /// to those of the last `MILLIS` milliseconds (unlimited by default).
 pub struct Data<M, const DEPTH: usize, const MILLIS: u64 = { u64::MAX }>(PhantomData<fn() -> M>);
 
-/// How a topic retains its messages, without the message type.
+/// The retention of messages by a topic, without the message type.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
 pub enum RetentionKind {
     /// The latest message: [`State`].

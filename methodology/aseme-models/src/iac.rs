@@ -126,7 +126,7 @@ pub struct StateRefinement {
     pub exit: String,
     /// Events that are deferred while it is active.
     pub defer: String,
-    /// How long its activity takes in simulated time.
+    /// The duration of its activity in simulated time.
     pub duration: Option<Duration>,
 }
 

@@ -44,7 +44,7 @@ pub use team_trace::{PlayedStep, TeamTrace};
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[non_exhaustive]
 pub struct Channels {
-    /// How many messages from one robot to another may be in transit; one more drops the oldest.
+    /// Maximum number of messages in transit from one robot to another; one more drops the oldest.
     pub capacity: usize,
     /// Whether any message may be lost.
     pub may_lose: bool,
@@ -66,7 +66,7 @@ pub struct Composition {
     pub robots: Vec<(String, usize)>,
     /// The routes: sender, receiver and name of the message.
     pub passing: Vec<(String, String, String)>,
-    /// How many states of the composition were found.
+    /// The number of states of the composition that were found.
     pub states: usize,
     /// Whether the exploration is complete.
     pub is_finished: bool,

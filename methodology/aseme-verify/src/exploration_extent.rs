@@ -1,4 +1,4 @@
-//! How much of a state space was explored.
+//! The explored part of a state space.
 
 use std::collections::BTreeSet;
 

@@ -70,7 +70,7 @@ pub enum Term {
     Copies {
         /// The term that is copied; of kind [`Forever`](Term::Forever).
         term: TermId,
-        /// How many copies, at least one.
+        /// The number of copies, at least one.
         count: u32,
     },
     /// `(x)`: a term in parentheses, kept because names of states are made from the text.

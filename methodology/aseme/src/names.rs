@@ -6,7 +6,7 @@
 
 use yase::{Node, Statechart, Transition};
 
-/// How each operator is spelled in an encoded name, in the order of replacement.
+/// The spelling of each operator in an encoded name, in the order of replacement.
 const ENCODING: [(&str, &str); 10] = [
     ("||", "_parallel_"),
     ("~", "_forever_"),

@@ -146,7 +146,7 @@ pub struct StateEntry {
     pub exit: Option<Vec<Action>>,
     /// Events that are deferred while it is active.
     pub defer: Option<Vec<String>>,
-    /// How long its activity takes in simulated time.
+    /// The duration of its activity in simulated time.
     pub duration: Option<std::time::Duration>,
     /// For composites: the kind of HISTORY by which it is entered.
     pub history: Option<NodeKind>,

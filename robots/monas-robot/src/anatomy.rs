@@ -69,11 +69,11 @@ pub struct Link {
     /// The index of the link that carries it, which is smaller than its own; none for the torso,
     /// which is the first one.
     pub parent: Option<usize>,
-    /// Its place in the frame of that link with all angles zero; metres.
+    /// Its position in the frame of that link with all angles zero; metres.
     pub offset: [f64; 3],
-    /// How it is turned there: about the fixed axes x, y and z, in this order; radians.
+    /// Its orientation there: rotations about the fixed axes x, y and z, in this order; radians.
     pub rotation: [f64; 3],
-    /// How a joint moves it there; none if it is fixed.
+    /// The joint that moves it, and the kind of motion; none if it is fixed.
     pub motion: Option<LinkMotion>,
     /// Its mass, kg.
     pub mass: f64,
@@ -81,7 +81,7 @@ pub struct Link {
     pub centre: [f64; 3],
 }
 
-/// How a joint turns or shifts a link. One joint may move several links: a motor of the Nao turns
+/// The motion of a link by a joint. One joint may move several links: a motor of the Nao turns
 /// both hips.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct LinkMotion {

@@ -6,7 +6,7 @@ use crate::{
     Actuators, Anatomy, ErrorKind, JointCommands, Joints, Percepts, Posture, Robot, Sensors, SkillResult,
 };
 
-/// How far a measured joint may lie beyond its limits, radians: the encoders are not perfect.
+/// Tolerance of a measured joint beyond its limits, radians: the encoders are not perfect.
 const JOINT_TOLERANCE: f64 = 0.02;
 
 /// Runs the suite on a free-standing body: about twenty seconds of simulated or real time. The body

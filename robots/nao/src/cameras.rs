@@ -30,7 +30,7 @@ pub struct CameraPlaces {
     /// Whether the upper camera delivers images that are upside down, as it is mounted; they are
     /// turned then.
     pub is_top_turned: bool,
-    /// How ball and goals look.
+    /// The appearance of ball and goals.
     pub objects: ObjectSet,
 }
 

@@ -110,7 +110,7 @@ pub fn camera_in_torso(camera: NaoCamera, angles: &JointAngles) -> Isometry3<f64
     links().pose_in_torso(link, Isometry3::identity(), angles)
 }
 
-/// How much lower a camera looks than the head, rad.
+/// The angle by which a camera looks lower than the head, rad.
 pub fn camera_tilt(camera: NaoCamera) -> f64 {
     let sight = camera_in_torso(camera, &[0.0; JOINTS]).rotation * Vector3::x();
     -libm::asin(sight.z)

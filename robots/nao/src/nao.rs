@@ -19,7 +19,7 @@ use crate::walk::WalkEngine;
 
 /// The cycles without a call of `sense` after which the commands count as lost: about one second.
 const LOST_AFTER: u32 = 84;
-/// How long a body waits for its first sensors when it is opened.
+/// Maximum time that a body waits for its first sensors when it is opened.
 const FIRST_PACKET: Duration = Duration::from_secs(5);
 /// The pause between two attempts to connect.
 const RETRY_INTERVAL: Duration = Duration::from_millis(100);

@@ -37,16 +37,16 @@ pub trait WalkEngine: Send {
 pub(crate) const TORSO_HEIGHT: f64 = 0.308;
 /// Half the distance between the feet, m.
 const HALF_STANCE: f64 = 0.05;
-/// How far a foot is lifted, m.
+/// The height to which a foot is lifted, m.
 const FOOT_LIFT: f64 = 0.02;
 /// The cycles of one step: 21 of 12 ms are a quarter of a second.
 const STEP_CYCLES: u32 = 21;
-/// The greatest velocities: ahead, backwards, sideways, turning.
+/// The greatest velocities: ahead, backwards, sideways, turning; m/s and rad/s.
 const MAX_VELOCITIES: [f64; 4] = [0.3, 0.15, 0.15, 1.2];
 /// The greatest changes of velocity, m/s2 and rad/s2.
 const MAX_ACCELERATIONS: (f64, f64) = (0.6, 4.0);
-/// How fast the toes return to where they should be in a step, 1/s. The torso sways by it, without
-/// a turn in the long run.
+/// Rate at which the toes return to their nominal position in a step, 1/s. The torso sways by it,
+/// without a turn in the long run.
 const TOES_RETURN: f64 = 2.0;
 
 /// A walk of equal steps. The foot on the ground moves straight under the torso, the other swings

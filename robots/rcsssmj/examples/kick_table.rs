@@ -65,7 +65,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
 /// The result of a kick.
 struct Kicked {
-    /// How far the ball was after the kick, m, and in which direction from the robot's, rad.
+    /// The distance of the ball after the kick, m, and its direction relative to the robot's, rad.
     distance: f64,
     direction: f64,
     speed: f64,

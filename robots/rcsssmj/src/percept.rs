@@ -37,7 +37,7 @@ pub struct Percept {
 pub struct Game {
     /// The time that has been played, s.
     pub play_time: f64,
-    /// How the game goes on.
+    /// The play mode of the game.
     pub play_mode: PlayMode,
     /// The name of the team on the left; empty while there is none.
     pub left_team: String,

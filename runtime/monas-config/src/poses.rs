@@ -41,7 +41,7 @@ const MAX_DURATION: f64 = 60.0;
 /// A pose of a sequence.
 #[derive(Clone, PartialEq, Debug)]
 pub struct JointPose {
-    /// How long the way to it takes, s.
+    /// The duration of the motion to it, s.
     pub seconds: f64,
     /// The stiffness of all joints on the way, 0 to 1, if it is given.
     pub stiffness: Option<f64>,

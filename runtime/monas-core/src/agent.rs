@@ -69,7 +69,7 @@ impl FailurePolicy {
 pub struct Agent {
     /// The name.
     pub name: String,
-    /// How often the list is called; `None` without a list.
+    /// The frequency of the list; `None` without a list.
     pub frequency: Option<Frequency>,
     /// The activities of the list, in the order of their calls.
     pub activities: Vec<ListedActivity>,

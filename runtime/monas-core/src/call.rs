@@ -31,9 +31,9 @@ pub struct ActivityCall {
     pub activation: Activation,
     /// The priority of the state: higher values are called first.
     pub priority: i32,
-    /// How long the call takes in simulated time.
+    /// The duration of the call in simulated time.
     pub duration: Duration,
-    /// How often the activity has been called in this state, with this call.
+    /// The number of calls of the activity in this state, including this one.
     pub number: u64,
     /// Whether the activation was called before and returned `Ongoing`.
     pub(crate) is_resumed: bool,

@@ -17,21 +17,21 @@ pub struct ChartCoverage {
     pub transitions: Vec<TransitionCoverage>,
 }
 
-/// How often a BASIC state was entered.
+/// The number of entries of a BASIC state.
 #[derive(Clone, PartialEq, Eq, Debug, Default)]
 pub struct StateCoverage {
     /// Its path, without the root's name.
     pub path: String,
-    /// How often it was entered.
+    /// The number of entries.
     pub entered: u64,
 }
 
-/// How often a transition fired.
+/// The number of times that a transition fired.
 #[derive(Clone, PartialEq, Eq, Debug, Default)]
 pub struct TransitionCoverage {
     /// The paths of source and target: `a -> b`.
     pub name: String,
-    /// How often it fired.
+    /// The number of times that it fired.
     pub fired: u64,
     /// Whether its guard is the literal `false`: it never fires by intention.
     pub never: bool,

@@ -60,7 +60,7 @@ pub struct BodyStatistics {
     pub overruns: u64,
     /// Cycles that failed.
     pub failures: u64,
-    /// How long after their due times the cycles began.
+    /// The delays of the cycles after their due times.
     pub lateness: Option<Percentiles>,
     /// From sensing to acting: the time between the last sensing before a command was published and
     /// the moment at which the body received the command.
@@ -74,9 +74,9 @@ pub struct ActivityStatistics {
     pub name: String,
     /// The path of the state that runs it; none in a list.
     pub state: Option<String>,
-    /// How often it was called.
+    /// The number of calls.
     pub calls: u64,
-    /// How often it failed or panicked.
+    /// The number of failures and panics.
     pub failures: u64,
     /// Duration of a call; measured as that of a cycle.
     pub call_time: Option<MovingAverage>,
@@ -180,7 +180,7 @@ impl Statistics {
         self.agents.iter().map(|agent| agent.micro_steps).sum()
     }
 
-    /// How often activities of that name were called on a host.
+    /// The number of calls of activities of that name on a host.
     pub fn calls(&self, host: &str, activity: &str) -> u64 {
         let agents = self.agents.iter().filter(|agent| agent.host == host);
         let activities = agents.flat_map(|agent| &agent.activities);
@@ -206,7 +206,7 @@ impl Statistics {
 /// ```
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub struct MovingAverage {
-    /// How many values there were.
+    /// The number of values.
     count: u64,
     /// Seconds.
     mean: f64,
@@ -250,7 +250,7 @@ impl MovingAverage {
         }
     }
 
-    /// How many values there were.
+    /// The number of values.
     pub fn count(&self) -> u64 {
         self.count
     }

@@ -12,7 +12,7 @@ use monas_core::module::note::{self, BuildFingerprint, FingerprintMismatch};
 /// Maximum size of a module, in bytes.
 const MAX_SIZE: u64 = 1 << 30;
 
-/// How to build a compatible module.
+/// Instruction to build a compatible module.
 pub(crate) const BUILD_HINT: &str = "build it like this program by `monas module build`";
 
 /// The bytes of a module and the note in them.

@@ -81,7 +81,7 @@ pub(crate) enum CycleOutcome {
     SafeState,
 }
 
-/// How an agent stops by this policy.
+/// The outcome of a cycle that a policy ends.
 fn stopped_by(policy: FailurePolicy) -> CycleOutcome {
     if policy == FailurePolicy::SafeState { CycleOutcome::SafeState } else { CycleOutcome::Stopped }
 }

@@ -45,7 +45,7 @@ const STUCK_LIST: Duration = Duration::from_secs(1);
 /// A call of a chart's activity, which may legitimately take long, is reported after this time.
 const STUCK_CALL: Duration = Duration::from_secs(10);
 
-/// How long the end of a run waits for calls of activities, unless an agent sets another limit.
+/// Time that the end of a run waits for calls of activities, unless an agent sets another limit.
 const SHUTDOWN_TIMEOUT: Duration = Duration::from_secs(3);
 
 /// Polling interval while threads end.

@@ -44,7 +44,7 @@ pub struct Simulation {
     hosting: LogHosts,
     /// Scripted changes of agents, by time and the order in which they were added.
     script: BTreeMap<(Timestamp, usize), (usize, Change)>,
-    /// How many changes have been scheduled.
+    /// The number of changes that have been scheduled.
     scripted: usize,
     watchdog: StallWatchdog,
     thread: Option<SimulationThread>,

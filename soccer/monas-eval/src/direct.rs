@@ -27,7 +27,7 @@ pub use player::DirectPlayer;
 
 /// Decides what the robot does, from the memory that all modules share.
 pub trait Behaviour: Send {
-    /// How often images are processed.
+    /// The interval of processed images.
     const VISION: Duration;
 
     /// Decides once, after a new estimate of the ball.

@@ -13,7 +13,7 @@ use yase::Diagnostic;
 use crate::direct::{DirectGoalie, DirectPlayer, DirectRobot};
 use crate::sources::{self, SourceFigures};
 
-/// How a player is built.
+/// The construction of a player.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Methodology {
     /// Directly on the robot interface.

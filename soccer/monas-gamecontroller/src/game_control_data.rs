@@ -39,7 +39,7 @@ pub struct GameControlData {
     pub phase: LeaguePhase,
     /// The state of the game.
     pub state: LeagueState,
-    /// How play is restarted, if it is.
+    /// The restart of play, if there is one.
     pub set_play: Option<SetPlay>,
     /// Whether this is the first half.
     pub is_first_half: bool,

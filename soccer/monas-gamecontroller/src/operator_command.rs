@@ -128,7 +128,7 @@ impl OperatorCommand {
     }
 }
 
-/// How a command is written.
+/// The syntax of a command.
 fn usage(name: &str) -> &'static str {
     let is_named = |usage: &str| usage.split(' ').next() == Some(name);
     HELP.iter().map(|(usage, _)| *usage).find(|usage| is_named(usage)).unwrap_or_default()

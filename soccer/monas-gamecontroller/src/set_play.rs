@@ -3,7 +3,7 @@
 use crate::rule_book::codes;
 
 codes! {
-    /// How play is restarted. Number 0 of both rule books, no set play, is not a value.
+    /// The restart of play. Number 0 of both rule books, no set play, is not a value.
     SetPlay, "set play":
     /// Goal kick.
     GoalKick "goal kick" Some(1), Some(5);

@@ -15,7 +15,7 @@ use crate::league::{League, LeagueCounts};
 use crate::match_events;
 use crate::summary::{AgentSummary, MatchEvent, MatchSummary, Scoreboard, TeamScore, TeamSummary};
 
-/// How long the end of a match waits for the activities to stop, in real time.
+/// Real time that the end of a match waits for the activities to stop.
 const STOP_LIMIT: Duration = Duration::from_secs(3);
 
 /// A running match, in simulated or in real time.

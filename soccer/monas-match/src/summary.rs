@@ -45,7 +45,7 @@ pub struct MatchSummary {
     pub hash: Option<String>,
     /// The number of published messages.
     pub messages: u64,
-    /// How long the field was simulated.
+    /// The simulated time of the field.
     pub simulated: Duration,
     /// The teams, in the order of their numbers.
     pub teams: Vec<TeamSummary>,
@@ -95,7 +95,7 @@ pub struct TeamSummary {
     pub actions: u32,
     /// Those of them to the ball's side.
     pub actions_to_ball: u32,
-    /// How often the goalie returned between its posts afterwards.
+    /// The number of times that the goalie returned between its posts afterwards.
     pub returns: u32,
     /// Sum of the durations of these returns, s.
     pub return_seconds: f64,

@@ -73,7 +73,7 @@ pub(crate) struct CameraView<'a> {
     pub(crate) scene: WorldView<'a>,
     /// The current colour of each team.
     pub(crate) colours: [TeamColour; 2],
-    /// How bad the light is: 0 for good light, at most 1.
+    /// The badness of the light: 0 for good light, at most 1.
     pub(crate) darkness: f64,
 }
 

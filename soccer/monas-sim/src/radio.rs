@@ -4,8 +4,8 @@ use crate::parameters::parameters;
 use crate::{Error, ErrorKind};
 
 parameters! {
-    /// How the radio carries messages, and how many a team may send. The defaults are an ideal
-    /// radio with the limits of the league.
+    /// The losses and delays of the radio, and the messages that a team may send. The defaults are
+    /// an ideal radio with the limits of the league.
     pub struct Radio {
         /// Probability that a receiver misses a message (an ideal radio; crowded halls lose up to a
         /// half).

@@ -15,7 +15,7 @@ pub struct Setup {
     pub rules: MatchRules,
     /// The radio.
     pub radio: Radio,
-    /// How ball and goals look.
+    /// The appearance of ball and goals.
     pub objects: ObjectSet,
     /// The two teams.
     pub teams: [TeamSetup; 2],

@@ -56,7 +56,7 @@ struct SensorState {
     lifted_until: u64,
 }
 
-/// How long a person holds a robot in the air before it stands at its new place, s.
+/// Time for which a person holds a robot in the air before it stands at its new position, s.
 const CARRY_TIME: f64 = 0.5;
 
 impl SimulatedWorld {
@@ -211,7 +211,7 @@ impl SimulatedWorld {
         &self.radio
     }
 
-    /// How ball and goals look.
+    /// The appearance of ball and goals.
     pub fn objects(&self) -> ObjectSet {
         self.objects
     }

@@ -21,13 +21,13 @@ use crate::{Ball, FieldLines, GameState, OtherRobot, Placement, PlayerState, Pos
 /// When a ball counts as found and as approaching.
 #[derive(Clone, Copy, Debug)]
 pub struct PerceptionModel {
-    /// How long a ball counts as found after it was last seen, seconds.
+    /// Time for which a ball counts as found after it was last seen, seconds.
     pub memory: f64,
     /// Least speed of an approaching ball, m/s.
     pub least_speed: f64,
     /// Largest lateral distance at which an approaching ball passes the robot, metres.
     pub reach: f64,
-    /// How a ball rolls.
+    /// The model of a rolling ball.
     pub ball: BallModel,
 }
 

@@ -1,6 +1,6 @@
 //! The measures of the objects on a field.
 
-/// How a ball looks.
+/// The appearance of a ball.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BallPattern {
     /// Orange all over, as in 2010.
@@ -12,7 +12,7 @@ pub enum BallPattern {
 /// The objects on a field, as far as vision has to know them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FieldObjects {
-    /// How the ball looks.
+    /// The appearance of the ball.
     pub ball: BallPattern,
     /// Radius of the ball, m.
     pub ball_radius: f64,

@@ -135,7 +135,7 @@ fn extent(solid: &Solid, camera: &Camera) -> Option<[usize; 4]> {
     (area[0] < area[2] && area[1] < area[3]).then_some(area)
 }
 
-/// How bright surfaces are in a light, which comes from above and from one side.
+/// The brightness of surfaces in a light from above and from one side.
 struct Shading {
     /// Towards the brighter side of the field.
     direction: Vector2<f64>,

@@ -40,7 +40,7 @@ pub(crate) struct ChartView {
     active: BTreeSet<u32>,
     /// The latest steps. Shared by the moments of a run.
     steps: VecDeque<Arc<Value>>,
-    /// How many steps there were.
+    /// The number of steps.
     count: u64,
     /// Counts changes.
     pub(crate) revision: u64,
@@ -104,7 +104,7 @@ impl ChartView {
             "state": self.state, "drawing": self.drawing, "active": self.active, "steps": steps})
     }
 
-    /// How many steps there were.
+    /// The number of steps.
     pub(crate) fn count(&self) -> u64 {
         self.count
     }

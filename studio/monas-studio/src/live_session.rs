@@ -51,7 +51,7 @@ struct PastMoment {
     view: RunView,
     /// The number of the messages that it has.
     number: u64,
-    /// How many seconds are played in a second; 0 while it is held.
+    /// The playback speed: played seconds per second; 0 while it is held.
     factor: f64,
 }
 

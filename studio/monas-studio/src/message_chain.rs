@@ -32,7 +32,7 @@ pub struct MessageChain {
 /// A message of a chain.
 #[derive(Clone, PartialEq, Debug, Serialize)]
 pub struct ChainLink {
-    /// How many messages lie between it and the first.
+    /// The number of messages between it and the first.
     pub depth: usize,
     /// The host that published it.
     pub host: String,

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// How many seconds of simulated time pass in a second, shared between a run and its viewers.
+/// Seconds of simulated time that pass in a second, shared between a run and its viewers.
 ///
 /// It is not part of the run: the same seed gives the same messages at any pace.
 ///

@@ -201,7 +201,7 @@ pub struct Belief {
     pub y: f64,
     /// Its heading, rad, if it has one.
     pub heading: Option<f64>,
-    /// How sure the host is, from 0 to 1.
+    /// The confidence of the host, from 0 to 1.
     pub confidence: f64,
 }
 

@@ -14,7 +14,7 @@ pub(crate) struct TapeMoment {
     pub(crate) view: RunView,
     /// By channel: how many messages it has had, and the last of them.
     channels: Vec<(u64, usize)>,
-    /// How many messages there were.
+    /// The number of messages.
     pub(crate) count: usize,
 }
 
@@ -52,7 +52,7 @@ impl TapeMoment {
         fitting.map(|(_, (_, last))| *last).max()
     }
 
-    /// How many messages a topic of a host has had.
+    /// The number of messages on a topic of a host.
     pub(crate) fn topic_count(&self, tape: &TapeRun, host: &str, topic: &str) -> u64 {
         let fitting = tape.channels().iter().zip(&self.channels);
         let fitting = fitting.filter(|(channel, _)| channel.host == host && channel.topic == topic);

@@ -27,7 +27,7 @@ pub(crate) struct TapeSession {
     tape: TapeRun,
     moment: TapeMoment,
     cursor: ViewCursor,
-    /// How many seconds of the tape are played in a second; 0 while it is held.
+    /// The playback speed: seconds of the tape per second; 0 while it is held.
     factor: f64,
     /// Whether the data of the tape still have to be sent to the viewer.
     is_new: bool,

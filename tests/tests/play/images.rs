@@ -140,7 +140,7 @@ fn what_images_show_is_where_it_is() {
     assert!(away < 0.25 && wrong_posts * 50 <= posts.len(), "{away} m, {wrong_posts} of {}", posts.len());
 }
 
-/// How the one robot that plays sees.
+/// The perception of the only robot that plays.
 #[derive(Clone, Copy, PartialEq)]
 enum Eyes {
     Blind,

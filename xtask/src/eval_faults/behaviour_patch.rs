@@ -9,7 +9,7 @@ use std::path::Path;
 
 use crate::faults::patch;
 
-/// How a player is built, as in `monas eval`.
+/// The construction of a player, as in `monas eval`.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
 pub(crate) enum Methodology {
     Direct,
@@ -133,7 +133,8 @@ impl BehaviourPatch {
 }
 
 impl BehaviourPatch {
-    /// How many lines of code, places and files it changes in the sources of a way, without tests.
+    /// The lines of code, positions and files that it changes in the sources of a methodology,
+    /// without tests.
     pub(crate) fn extent(&self, way: Methodology) -> (usize, usize, usize) {
         let Some(Edit::Diffs(diffs)) = self.edits.get(&way) else { return (0, 0, 0) };
         let own: Vec<&str> =

@@ -141,7 +141,7 @@ struct FlowEdge {
 }
 
 impl FlowEdge {
-    /// How far from the axis of a box it begins or ends, so that edges between the same two boxes
+    /// The distance of its end from the axis of a box, so that edges between the same two boxes
     /// are lines of their own.
     fn aside(&self, cell: &FlowCell) -> f64 {
         let (number, count) = self.twin;

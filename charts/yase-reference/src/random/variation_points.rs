@@ -13,7 +13,7 @@ use super::Choices;
 /// Limit of micro-steps, and of steps at one time.
 const MICRO_STEP_LIMIT: u32 = 40;
 
-/// How the semantics of a case is derived.
+/// The derivation of the semantics of a case.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(crate) enum Variant {
     /// `yase`, `uml` or `scxml`.

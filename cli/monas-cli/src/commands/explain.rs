@@ -11,10 +11,10 @@ use monas_terminal::{CommandFailure, CommandOutput, Exit};
 /// The columns of an explanation.
 const MAX_COLUMNS: usize = 80;
 
-/// How many codes are suggested instead of an unknown one, at most.
+/// Maximum number of codes that are suggested instead of an unknown one.
 const MAX_SUGGESTIONS: usize = 8;
 
-/// How many characters a suggested code shares with the unknown one, at least.
+/// Minimum number of characters that a suggested code shares with the unknown one.
 const MIN_COMMON_CHARACTERS: usize = 2;
 
 /// The arguments of `monas explain`.

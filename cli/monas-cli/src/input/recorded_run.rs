@@ -147,7 +147,7 @@ fn seed(text: &str) -> Result<u64, String> {
     text.parse().map_err(|_| format!("the tape's seed `{text}` is not a number"))
 }
 
-/// How many messages were dropped, if any.
+/// The number of messages that were dropped, if any.
 fn dropped(overview: &TapeOverview) -> Option<&str> {
     let dropped = overview.facts.iter().filter_map(|facts| facts.entries.get("dropped"));
     dropped.map(String::as_str).find(|dropped| *dropped != "0")

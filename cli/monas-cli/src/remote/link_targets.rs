@@ -15,7 +15,7 @@ use yase::Diagnostic;
 
 use super::connection::failure;
 
-/// How long to wait for a peer.
+/// Maximum time to wait for a peer.
 const TIMEOUT: Duration = Duration::from_secs(5);
 
 /// The interval between checks.

@@ -9,7 +9,7 @@ use crate::copying::copy;
 use crate::kit::{Answer, monas, root};
 use crate::running::{Running, ask, objects};
 
-/// How often a condition is checked.
+/// The number of checks of a condition.
 const CHECKS: usize = 100;
 
 /// The project's configuration and models in a folder, with a referee that skips the phases before

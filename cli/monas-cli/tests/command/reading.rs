@@ -16,7 +16,7 @@ use crate::running::{Running, in_folder};
 /// Commands that only look at a run.
 const READ_ONLY_COMMANDS: [&str; 3] = ["monas chart show ", "monas topic list ", "monas agent list"];
 
-/// How often commands that only look are repeated at most.
+/// Maximum number of repetitions of commands that only read.
 const REPETITIONS: usize = 20;
 
 /// The blocks of a chapter.

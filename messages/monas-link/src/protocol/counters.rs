@@ -72,6 +72,6 @@ pub struct Counters {
     pub strangers: u64,
     /// Packets of links that speak another version of the protocol.
     pub foreign: u64,
-    /// How often a packet had to wait because the budget was exhausted.
+    /// The number of times that a packet had to wait because the budget was exhausted.
     pub waits: u64,
 }

@@ -20,7 +20,7 @@ pub(crate) const OFFER_LIMIT: usize = 1024;
 /// recognised.
 const REMEMBERED_INCARNATIONS: usize = 4;
 
-/// How often a refusal is repeated without an acknowledgement.
+/// The number of times that a refusal is sent without an acknowledgement.
 pub(crate) const REFUSAL_TRIES: u8 = 8;
 
 /// Another host.
@@ -48,7 +48,7 @@ pub(crate) struct PeerTopic {
     pub(crate) state: PeerTopicState,
 }
 
-/// How a topic of another host is handled.
+/// The treatment of a topic of another host.
 pub(crate) enum PeerTopicState {
     /// It is not received here.
     Unwanted,

@@ -57,7 +57,7 @@ impl<'a> FormText<'a> {
         self.metamodel.classes.iter().find(|class| class.word == item.word.text)
     }
 
-    /// How each item of a class is referred to, by its number in the text.
+    /// The text that refers to each item of a class, by its number in the text.
     pub(crate) fn references(&self, class: &Class) -> BTreeMap<usize, Reference> {
         let mut seen: BTreeMap<String, usize> = BTreeMap::new();
         let items = self.document.items.iter().enumerate().filter(|(_, item)| item.word.text == class.word);

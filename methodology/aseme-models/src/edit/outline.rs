@@ -116,7 +116,7 @@ pub struct ItemOutline {
     pub word: &'static str,
     /// Its name.
     pub name: String,
-    /// How others refer to it.
+    /// The text by which others refer to it.
     pub reference: String,
     /// The position of its header.
     pub span: Span,

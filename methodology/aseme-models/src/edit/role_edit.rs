@@ -47,7 +47,7 @@ pub(crate) struct RoleText<'a> {
     blanked: String,
     /// The chart of the formulas alone; its transitions come first in that of the role.
     plain: Statechart,
-    /// How many transitions the role has.
+    /// The number of transitions of the role.
     transitions: usize,
     /// The entry that applies to each transition.
     placed: BTreeMap<TransitionId, usize>,

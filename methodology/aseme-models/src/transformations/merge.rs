@@ -361,7 +361,7 @@ fn copy_refinement(theirs: &IacTransition, own: &mut IacTransition) -> Option<Di
     found
 }
 
-/// How similar two composites must be.
+/// The minimum similarity of two composites.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum ShapeMatch {
     /// The same.

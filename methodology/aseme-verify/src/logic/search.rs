@@ -11,7 +11,7 @@ const MOST_BRANCHES: usize = 2_500;
 
 /// The state of a search.
 pub(crate) struct SatisfiabilitySearch {
-    /// How many alternatives may still be searched.
+    /// The number of alternatives that may still be searched.
     left: usize,
     /// Whether an alternative was skipped or is satisfiable only if an unknown value permits it.
     is_open: bool,
@@ -51,7 +51,7 @@ struct Branch<'f> {
     facts: Assumptions,
     /// The last of the choices that remain beside it.
     last_choice: Option<usize>,
-    /// How many choices were opened before its alternatives.
+    /// The number of choices that were opened before its alternatives.
     opened: usize,
     untried: &'f [NegationNormalForm],
 }

@@ -24,7 +24,7 @@ pub struct PropertyResult {
     pub name: String,
     /// The outcome.
     pub outcome: PropertyOutcome,
-    /// How many states of the chart were explored.
+    /// The number of explored states of the chart.
     pub states: usize,
 }
 

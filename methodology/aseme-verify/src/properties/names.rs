@@ -157,7 +157,7 @@ fn awaited(name: &Name, chart: &CompiledChart, vocabulary: &TypeEnvironment) -> 
     }
 }
 
-/// How a trigger names an event.
+/// The form in which a trigger names an event.
 fn spelling(event: EventId, chart: &CompiledChart, vocabulary: &TypeEnvironment) -> String {
     let events = chart.events();
     let topic = events.topic(event).and_then(|id| vocabulary.topics.iter().find(|topic| topic.id == id));

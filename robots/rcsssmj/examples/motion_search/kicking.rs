@@ -83,7 +83,8 @@ const FIXED_PARAMETERS: [(&str, f64); 4] =
 const KICKS: usize = 6;
 /// By how much the place of the ball differs from that of the kick, m.
 const POSITION_SPREAD: f64 = 0.03;
-/// How long the robot stands before a kick, to twice that, s; after it the robot walks a little.
+/// Time for which the robot stands before a kick, to twice that, s; after it the robot walks a
+/// little.
 const STANDING_TIME: f64 = 1.0;
 const ROLLING_TIME: f64 = 3.0;
 const WALKING_TIME: f64 = 2.0;

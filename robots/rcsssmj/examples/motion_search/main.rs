@@ -35,7 +35,7 @@ pub(crate) type Searched = (&'static str, f64, f64);
 pub(crate) trait Motion: Sync {
     /// The parameters.
     fn searched(&self) -> &[Searched];
-    /// How badly a motion with these values does in a world, in trials that differ by chance.
+    /// The cost of a motion with these values in a world, in trials that differ by chance.
     fn cost(&self, values: &[f64], world: &mut World, chance: &mut Pcg32) -> Result<f64, Box<dyn Error>>;
     /// The file with these values.
     fn file(&self, values: &[f64]) -> String;

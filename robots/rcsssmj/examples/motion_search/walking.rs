@@ -127,9 +127,9 @@ const TRIALS: [&[Part]; 3] = [
 ];
 /// By how much the seconds of a part differ by chance, in both directions.
 const TIME_SPREAD: f64 = 0.4;
-/// How long the robot stands first, s.
+/// Time for which the robot stands first, s.
 const STANDING_TIME: f64 = 1.0;
-/// How long the robot has to reach a velocity before deviations count, s.
+/// Time for the robot to reach a velocity before deviations count, s.
 const SETTLING_TIME: f64 = 0.8;
 /// Deviations that cost as much as a second: m/s, m/s and rad/s.
 const DEVIATIONS: [f64; 3] = [0.2, 0.15, 0.4];
@@ -237,7 +237,7 @@ fn trial_cost(
     Ok(deviation / total as f64 + INCLINATION_COST * inclination / total as f64)
 }
 
-/// How far a robot has moved in its own frame, m and rad.
+/// The motion of a robot in its own frame, m and rad.
 pub(crate) fn moved(from: &State, to: &State) -> [f64; 3] {
     let (sin, cos) = libm::sincos(from.heading);
     let (x, y) = (to.place[0] - from.place[0], to.place[1] - from.place[1]);

@@ -7,7 +7,7 @@ use super::description::name_of;
 use super::{numbers, placement};
 use crate::{Attribute, Element, Grammar, Values};
 
-/// How a joint moves.
+/// The type of motion of a joint.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(super) enum JointType {
     Revolute,

@@ -15,7 +15,7 @@ use crate::parameters::Parameters;
 pub struct AgentProfile {
     /// The name.
     pub name: String,
-    /// How often the list is called; `None` without a list.
+    /// The frequency of the list; `None` without a list.
     pub frequency: Option<Frequency>,
     /// The priority of its threads.
     pub priority: i32,

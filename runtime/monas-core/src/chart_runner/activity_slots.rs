@@ -50,7 +50,7 @@ struct ActivitySlot {
     node: NodeId,
     name: String,
     context: Arc<ActivityContext>,
-    /// How long a call takes in simulated time.
+    /// The duration of a call in simulated time.
     duration: Duration,
     /// The topics that the activity declares to read, sorted; `None` without a declaration.
     declared: Option<Box<[TopicSlot]>>,

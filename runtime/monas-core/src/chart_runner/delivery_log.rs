@@ -13,7 +13,7 @@ pub trait ReplayGuide: Send {
     fn publishing(&mut self);
 }
 
-/// How fetch positions are treated.
+/// The treatment of fetch positions.
 #[derive(Default)]
 pub(crate) enum DeliveryLog {
     /// Not recorded.

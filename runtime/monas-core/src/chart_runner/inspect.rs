@@ -159,7 +159,7 @@ impl ChartRunner {
         self.host.slots.statistics(self.machine.chart())
     }
 
-    /// How often each state and transition was used.
+    /// The number of uses of each state and transition.
     pub fn coverage(&self) -> ChartCoverage {
         self.host.coverage.table(self.machine.chart(), &self.host.host, &self.host.agent)
     }

@@ -29,7 +29,7 @@ impl CameraFaults {
         Self { stream, phases }
     }
 
-    /// How bad the light is at a time, s: 0 for good light, at most 1.
+    /// The badness of the light at a time, s: 0 for good light, at most 1.
     pub(crate) fn darkness(&self, time: f64) -> f64 {
         let wave = |index: usize| libm::sin(TAU * time / LIGHT_PERIODS[index] + self.phases[index]);
         (wave(0) * wave(1)).max(0.0)

@@ -33,7 +33,7 @@ fn command() -> impl Strategy<Value = Command> {
     })
 }
 
-/// How far the ball rolls after the hardest of kicks, m.
+/// The distance that the ball rolls after the hardest kick, m.
 fn longest_roll() -> f64 {
     let physics = Physics::default();
     let speed = physics.kick_speed + 5.0 * physics.kick_speed_noise;

@@ -25,7 +25,7 @@ pub struct PassBall {
     head: HeadController,
 }
 
-/// How long the outcome of a pass is watched.
+/// Time for which the outcome of a pass is observed.
 const WATCH_TIME: Duration = Duration::from_millis(500);
 /// Speed at which a pass arrives at the partner, m/s.
 const ARRIVAL_SPEED: f64 = 0.55;

@@ -28,7 +28,7 @@ pub struct TeamRadio {
     sequence: u32,
 }
 
-/// How long a report is valid.
+/// Time for which a report is valid.
 const MAX_REPORT_AGE: Duration = Duration::from_secs(4);
 /// Time since a kick that never happened, seconds.
 const NO_KICK: f64 = 1e6;

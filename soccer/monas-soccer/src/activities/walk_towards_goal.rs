@@ -22,7 +22,7 @@ pub struct WalkTowardsGoal {
     since: Option<Timestamp>,
 }
 
-/// How long a pass is awaited.
+/// Maximum time for which a pass is awaited.
 const TIMEOUT: Duration = Duration::from_secs(30);
 
 impl Activity for WalkTowardsGoal {

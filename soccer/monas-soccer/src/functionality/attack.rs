@@ -24,7 +24,7 @@ const KICK_HEADING_ERROR: f64 = 0.22;
 /// Time after a pass for which the ball belongs to the partner, seconds: it rolls, and the partner
 /// walks to it and round it.
 const PASS_TIME: f64 = 20.0;
-/// How long a shot counts as outcome, seconds.
+/// Time for which a shot counts as outcome, seconds.
 const SHOT_TIME: f64 = 1.0;
 /// Margin by which an opponent must be nearer to the ball than the team to count as having it,
 /// metres: reports of mates that walk to the ball are old.
@@ -118,8 +118,8 @@ pub struct AttackState {
     pub opponent_has_ball: bool,
     /// The ball is over a line or about to cross it.
     pub ball_is_out: bool,
-    /// How much shorter the way to the ball is for the team mate with the shortest, metres; zero if
-    /// it is not shorter.
+    /// The distance by which the path to the ball is shorter for the team mate with the shortest,
+    /// metres; zero if it is not shorter.
     pub mate_lead: f64,
     /// An opponent is nearer to the ball than every player of the team.
     pub opponent_leads: bool,

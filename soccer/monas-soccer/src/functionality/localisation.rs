@@ -139,7 +139,7 @@ impl Localisation {
         })
     }
 
-    /// How far a pose is from the nearest anchor: the sum of metres and radians.
+    /// The distance of a pose from the nearest anchor: the sum of metres and radians.
     fn way_to(&self, pose: &Isometry2<f64>) -> f64 {
         let way = |known: &Isometry2<f64>| {
             let place = known.translation.vector - pose.translation.vector;

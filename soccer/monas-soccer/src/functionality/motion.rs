@@ -67,7 +67,7 @@ pub enum Posture {
     Lifted,
 }
 
-/// How a skill, or a request for one, ended.
+/// The outcome of a skill or of a request for one.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum SkillEnd {
     /// The joints have gone through the whole motion.
@@ -85,7 +85,7 @@ pub struct BodyReport {
     pub posture: Posture,
     /// The number of the last skill that has ended.
     pub skill_done: u64,
-    /// How that skill ended; none before the first.
+    /// The outcome of that skill; none before the first.
     pub skill_end: Option<SkillEnd>,
 }
 
@@ -138,7 +138,7 @@ impl MotionArbiter {
         self.done
     }
 
-    /// How that request ended; none before the first.
+    /// The outcome of that request; none before the first.
     pub fn end(&self) -> Option<SkillEnd> {
         self.end
     }

@@ -42,7 +42,7 @@ struct Track {
 
 /// Distance within which two sightings of one colour are the same robot, metres.
 const MATCHING_DISTANCE: f64 = 0.4;
-/// How long a robot that is not seen again is remembered.
+/// Time for which a robot that is not seen again is remembered.
 const MAX_UNSEEN_TIME: Duration = Duration::from_millis(1500);
 /// Number of pictures in which a robot must be seen again.
 const CONFIRMING_PICTURES: u32 = 4;

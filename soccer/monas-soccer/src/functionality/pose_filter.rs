@@ -88,7 +88,7 @@ pub(super) struct PoseFilter {
 const GATE_DISTANCE: f64 = 13.8;
 /// The same distance by which the best place of a line must match better than the next.
 const AMBIGUITY_DISTANCE: f64 = 4.0;
-/// How far a line may be seen beyond the ends of the line of the field, metres.
+/// The length by which a line may be seen beyond the ends of the line of the field, metres.
 const MAX_OVERSHOOT: f64 = 0.3;
 /// Number of consecutive mismatches after which the filter increases its uncertainty.
 const MAX_MISMATCHES: u32 = 8;

@@ -65,7 +65,7 @@ pub struct RobotFigure {
 pub struct Scene {
     /// The field.
     pub markings: FieldMarkings,
-    /// How ball, goals and lines look.
+    /// The appearance of ball, goals and lines.
     pub objects: FieldObjects,
     /// The position of the ball, m; none without a ball.
     pub ball: Option<Point2<f64>>,
@@ -158,7 +158,7 @@ impl Scene {
         colour.map(|part| part * shadow)
     }
 
-    /// How much light reaches a point beside what stands there.
+    /// The light that reaches a point beside objects that stand there.
     fn shadow(&self, point: Point2<f64>) -> f32 {
         let under = |squared: f64, radius: f64| {
             // Most points are beside all shadows; a root for each would take long.

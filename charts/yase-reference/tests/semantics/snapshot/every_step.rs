@@ -31,7 +31,7 @@ fn a_machine_that_is_restored_at_every_micro_step_writes_the_same_lines() {
     assert!(mid_step > 20 * runs && all > mid_step, "the runs are too short");
 }
 
-/// How many snapshots were taken, and how many of them in the middle of a step.
+/// The number of snapshots that were taken, and of those in the middle of a step.
 fn cut_everywhere(numbers: std::ops::Range<u64>) -> (u64, u64) {
     let (mut all, mut mid_step) = (0, 0);
     for number in numbers {

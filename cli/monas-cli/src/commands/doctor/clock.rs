@@ -7,7 +7,7 @@ use monas_terminal::{Interrupt, WallClock};
 use super::CheckResult;
 
 const AREA: &str = "clock";
-/// How many waits of 1 ms are measured.
+/// The number of waits of 1 ms that are measured.
 const MEASURED_WAITS: u32 = 10;
 /// The latest acceptable end of a wait.
 const MAX_WAIT: Duration = Duration::from_millis(2);

@@ -20,7 +20,7 @@ use super::{RunArguments, control, outputs, real_time};
 
 /// Simulated time between two checks of the interrupt and the pace.
 const CHECK_INTERVAL: Duration = Duration::from_millis(20);
-/// How long an activity may take to return after an interrupt.
+/// Maximum time for an activity to return after an interrupt.
 const STOP_LIMIT: Duration = Duration::from_secs(3);
 
 pub(super) fn execute(

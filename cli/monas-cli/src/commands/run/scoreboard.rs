@@ -34,7 +34,7 @@ pub(crate) fn for_console<'c>(
 /// One line for each notable event and for each minute.
 struct Lines<'a> {
     out: Box<dyn Write + 'a>,
-    /// How many events have been written.
+    /// The number of events that have been written.
     events: usize,
     /// The last minute whose score has been written.
     minutes: Option<u64>,

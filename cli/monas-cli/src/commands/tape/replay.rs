@@ -24,7 +24,7 @@ struct ReplayOutcome {
     /// The earliest difference.
     first: Option<ReplayDifference>,
     tallies: Vec<ComparisonCounts>,
-    /// How much of the run was replayed.
+    /// The length of the replayed part of the run.
     length: Duration,
     /// Wall-clock time of the replay.
     took: Duration,

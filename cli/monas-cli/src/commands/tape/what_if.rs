@@ -217,7 +217,7 @@ struct RunComparison<'a> {
     other: &'a TapeRun,
     /// The moment of the change, s.
     at: f64,
-    /// How far both are compared, s.
+    /// The time up to which both are compared, s.
     end: f64,
     texts: Vec<String>,
 }

@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 
 use super::metrics::{ActivityFigures, AgentFigures, Metrics};
 
-/// How many topics are listed.
+/// Maximum number of listed topics.
 const MAX_TOPICS: usize = 10;
 
 pub(crate) const AGENT_HEADER: [&str; 10] =

@@ -11,7 +11,7 @@ use yase::{Source, Statechart};
 use crate::changes::{MODELS, any_change};
 use crate::kit::{BALL, Ball, GAME, Game, at};
 
-/// How many changes there are, and in how many milliseconds.
+/// The number of changes, and the time of all of them in milliseconds.
 const CHANGES: u64 = 1000;
 const MILLIS: u64 = 20_000;
 

@@ -20,7 +20,7 @@ const ANGLE_OF_VIEW: f64 = 0.8343;
 /// Standard deviation of the angles of joints and inertial unit, rad: about 0.15 degrees.
 const ANGLE_ERROR: f64 = 0.0026;
 
-/// How far away objects are that have to be seen, m.
+/// The distances up to which objects have to be seen, m.
 pub(crate) const BALL_RANGE: f64 = 3.0;
 pub(crate) const POST_RANGE: f64 = 4.5;
 pub(crate) const ROBOT_RANGE: f64 = 3.0;

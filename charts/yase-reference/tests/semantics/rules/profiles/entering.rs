@@ -1,4 +1,4 @@
-//! How transitions are ordered and fire, where composites begin, and how the root ends.
+//! The order and firing of transitions, the beginning of composites, and the end of the root.
 
 use yase::{ExitOrder, InitialState, Semantics};
 

@@ -17,9 +17,9 @@ pub(crate) struct ChartCounts {
     pub(crate) chart: Statechart,
     /// The agents that run it: `blue-1 Goalie`.
     pub(crate) players: Vec<String>,
-    /// How often each node was entered.
+    /// The number of entries of each node.
     pub(crate) entered: Vec<u64>,
-    /// How often each transition fired.
+    /// The number of times that each transition fired.
     pub(crate) fired: Vec<u64>,
     /// The transitions of each source that are tried one after another, in that order.
     tried: Vec<Vec<TransitionId>>,
