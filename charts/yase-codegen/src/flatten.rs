@@ -77,7 +77,7 @@ pub struct FlatMachine {
     /// The path at the start.
     pub start: FlatPath,
     /// The paths, by state and by event.
-    pub ways: Vec<Vec<FlatPath>>,
+    pub paths: Vec<Vec<FlatPath>>,
 }
 
 /// A configuration, with the rest of the chart's state.

@@ -9,7 +9,7 @@ use yase::expression::ScriptId;
 pub(crate) struct ConstraintCache<'s, 'a> {
     allows: &'s mut ConditionConstraint<'a>,
     /// Rows of conditions with their values; the last condition has none.
-    asked: RowInterner,
+    conditions: RowInterner,
     /// Whether it may be false and whether it may be true.
     answers: Vec<(bool, bool)>,
     row: Vec<u32>,
@@ -17,7 +17,7 @@ pub(crate) struct ConstraintCache<'s, 'a> {
 
 impl<'s, 'a> ConstraintCache<'s, 'a> {
     pub(crate) fn new(allows: &'s mut ConditionConstraint<'a>) -> ConstraintCache<'s, 'a> {
-        ConstraintCache { allows, asked: RowInterner::default(), answers: Vec::new(), row: Vec::new() }
+        ConstraintCache { allows, conditions: RowInterner::default(), answers: Vec::new(), row: Vec::new() }
     }
 
     /// Whether a condition may be false and whether it may be true, given the values of others.
@@ -25,7 +25,7 @@ impl<'s, 'a> ConstraintCache<'s, 'a> {
         self.row.clear();
         self.row.extend(known.iter().map(|&(script, value)| script.0 << 1 | u32::from(value)));
         self.row.push(script.0);
-        let number = self.asked.number(&self.row);
+        let number = self.conditions.number(&self.row);
         if let Some(&answer) = self.answers.get(number) {
             return answer;
         }

@@ -38,14 +38,14 @@ pub fn to_xstate(chart: &Statechart) -> Exported {
         Ok(lost) => lost,
         Err(nothing) => return nothing,
     };
-    let ways = all_ways(chart, &mut lost);
+    let transitions = all_ways(chart, &mut lost);
     let machine = XStateWriter {
         chart,
         ids: Ids::of(chart),
         timers: TimerStarts::of(chart),
         runs: running(chart),
-        merged: merged(chart, &ways),
-        ways,
+        merged: merged(chart, &transitions),
+        transitions,
         lost,
         writer: JsonWriter::default(),
     };
@@ -61,7 +61,7 @@ struct XStateWriter<'a> {
     /// By node: whether it is a START expressed by its composite's `initial`.
     merged: Vec<bool>,
     /// By node.
-    ways: Vec<Vec<ResolvedTransition<'a>>>,
+    transitions: Vec<Vec<ResolvedTransition<'a>>>,
     lost: LossReport<'a>,
     writer: JsonWriter,
 }
@@ -118,11 +118,11 @@ impl XStateWriter<'_> {
     }
 
     /// The trigger of a transition path out of a node.
-    fn occasion(&self, id: NodeId, way: &ResolvedTransition<'_>) -> XStateTrigger {
-        if let Some(delay) = self.timers.delay(id, way) {
+    fn occasion(&self, id: NodeId, transition: &ResolvedTransition<'_>) -> XStateTrigger {
+        if let Some(delay) = self.timers.delay(id, transition) {
             return XStateTrigger::After((delay.as_nanos() as f64 / 1e6).to_string());
         }
-        match way.trigger() {
+        match transition.trigger() {
             Some(Trigger::OneOf(events)) => {
                 return XStateTrigger::On(events.iter().map(descriptor).collect());
             }
@@ -130,27 +130,29 @@ impl XStateWriter<'_> {
             None => {}
         }
         let node = self.chart.node(id);
-        let guarded = way.segments.first().is_some_and(|first| first.expression.guard.is_some());
+        let guarded = transition.segments.first().is_some_and(|first| first.expression.guard.is_some());
         let completes = match node.kind {
             NodeKind::Basic => node.activity.is_some(),
-            NodeKind::Or | NodeKind::And => !guarded || way.targets == [id],
+            NodeKind::Or | NodeKind::And => !guarded || transition.targets == [id],
             _ => false,
         };
-        if completes && way.joined.is_empty() { XStateTrigger::Done } else { XStateTrigger::Always }
+        if completes && transition.joined.is_empty() { XStateTrigger::Done } else { XStateTrigger::Always }
     }
 
     /// Whether a path out of a node waits for a guard after the node has completed. `onDone`
     /// evaluates a guard only once.
     fn waits_when_done(&self, id: NodeId) -> bool {
-        self.ways[id.0 as usize].iter().any(|way| {
-            way.has_guard() && !way.is_never() && matches!(self.occasion(id, way), XStateTrigger::Done)
+        self.transitions[id.0 as usize].iter().any(|transition| {
+            transition.has_guard()
+                && !transition.is_never()
+                && matches!(self.occasion(id, transition), XStateTrigger::Done)
         })
     }
 
     /// Reports where XState treats the paths out of a node differently.
     fn compare(&mut self, id: NodeId) {
         let mut any = false;
-        for way in &self.ways[id.0 as usize] {
+        for way in &self.transitions[id.0 as usize] {
             let Some(first) = way.segments.first() else { continue };
             let arrow = self.lost.arrow(first);
             if way.segments.iter().any(|segment| segment.weight.is_some()) {
@@ -186,16 +188,20 @@ impl XStateWriter<'_> {
     }
 
     /// Whether a path stops activities that YASE would wait for.
-    fn stops(&self, id: NodeId, way: &ResolvedTransition<'_>) -> bool {
-        let internal = way.segments.first().is_some_and(|first| first.internal);
-        let leaves = !(internal && way.targets == [id]) && self.runs[id.0 as usize];
-        let interrupts = way.segments.iter().any(|segment| segment.interrupts);
-        leaves && !interrupts && !way.is_never() && !matches!(self.occasion(id, way), XStateTrigger::Done)
+    fn stops(&self, id: NodeId, transition: &ResolvedTransition<'_>) -> bool {
+        let internal = transition.segments.first().is_some_and(|first| first.internal);
+        let leaves = !(internal && transition.targets == [id]) && self.runs[id.0 as usize];
+        let interrupts = transition.segments.iter().any(|segment| segment.interrupts);
+        leaves
+            && !interrupts
+            && !transition.is_never()
+            && !matches!(self.occasion(id, transition), XStateTrigger::Done)
     }
 
     fn compare_choice(&mut self, id: NodeId) {
         let node = self.chart.node(id);
-        if node.kind == NodeKind::Choice && self.ways[id.0 as usize].iter().all(ResolvedTransition::has_guard)
+        if node.kind == NodeKind::Choice
+            && self.transitions[id.0 as usize].iter().all(ResolvedTransition::has_guard)
         {
             let path = self.chart.path(id);
             self.lost.moment(format!("`{path}` without an enabled branch is an error, in XState it waits"));
@@ -211,15 +217,15 @@ fn descriptor(event: &Path) -> String {
 
 /// The transition paths out of each node; their losses are recorded.
 fn all_ways<'a>(chart: &'a Statechart, lost: &mut LossReport<'_>) -> Vec<Vec<ResolvedTransition<'a>>> {
-    let mut ways = TransitionResolver::of(chart);
-    let mut all = joins::joins(chart, &mut ways, lost);
+    let mut resolver = TransitionResolver::of(chart);
+    let mut all = joins::joins(chart, &mut resolver, lost);
     for (id, _) in chart.nodes().filter(|&(id, _)| role(chart, id) == ConnectorRole::Rest) {
-        let own = ways.from(id, lost);
+        let own = resolver.from(id, lost);
         all[id.0 as usize].splice(0..0, own);
     }
     let has_place = chart.node(Statechart::ROOT).kind == NodeKind::Or;
-    for way in all.iter_mut() {
-        way.retain(|way| can_arrive(chart, way, has_place, lost));
+    for transitions in all.iter_mut() {
+        transitions.retain(|transition| can_arrive(chart, transition, has_place, lost));
     }
     let mut reached = vec![false; chart.nodes().len()];
     for connector in all.iter().flatten().flat_map(|way| way.via(chart)) {
@@ -229,7 +235,7 @@ fn all_ways<'a>(chart: &'a Statechart, lost: &mut LossReport<'_>) -> Vec<Vec<Res
         chart.nodes().filter(|&(id, _)| role(chart, id) != ConnectorRole::Rest && !reached[id.0 as usize])
     {
         lost.kind(id, "nothing, because no path uses it");
-        for segment in ways.outgoing(id) {
+        for segment in resolver.outgoing(id) {
             lost.report_omitted(format!("no path uses {}", lost.arrow(segment)));
         }
     }
@@ -238,20 +244,20 @@ fn all_ways<'a>(chart: &'a Statechart, lost: &mut LossReport<'_>) -> Vec<Vec<Res
 
 fn can_arrive(
     chart: &Statechart,
-    way: &ResolvedTransition<'_>,
+    transition: &ResolvedTransition<'_>,
     has_place: bool,
     lost: &mut LossReport<'_>,
 ) -> bool {
-    let wrong = way.targets.iter().find(|&&target| match chart.node(target).kind {
+    let wrong = transition.targets.iter().find(|&&target| match chart.node(target).kind {
         NodeKind::Start => true,
         NodeKind::Terminate => !has_place,
         _ => false,
     });
-    let ends = way.segments.first().filter(|first| {
+    let ends = transition.segments.first().filter(|first| {
         let kind = chart.node(first.source).kind;
         matches!(kind, NodeKind::End | NodeKind::Terminate)
     });
-    if let (Some(&wrong), Some(first)) = (wrong, way.segments.first()) {
+    if let (Some(&wrong), Some(first)) = (wrong, transition.segments.first()) {
         lost.report_omitted(format!("{} leads to `{}`", lost.arrow(first), chart.path(wrong)));
     }
     if let Some(first) = ends {
@@ -275,10 +281,10 @@ fn running(chart: &Statechart) -> Vec<bool> {
 
 /// For each node whether it is a START with one path, without guard and connectors, to a sibling
 /// that is a state.
-fn merged(chart: &Statechart, ways: &[Vec<ResolvedTransition<'_>>]) -> Vec<bool> {
+fn merged(chart: &Statechart, transitions: &[Vec<ResolvedTransition<'_>>]) -> Vec<bool> {
     let plain = |id: NodeId| {
         let node = chart.node(id);
-        let [way] = ways[id.0 as usize].as_slice() else { return false };
+        let [way] = transitions[id.0 as usize].as_slice() else { return false };
         let ([segment], [target]) = (way.segments.as_slice(), way.targets.as_slice()) else { return false };
         let (expression, target) = (&segment.expression, chart.node(*target));
         let rests = matches!(

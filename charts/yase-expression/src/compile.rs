@@ -162,7 +162,7 @@ fn effect(action: &Action, scope: &NameContext<'_>, events: &mut EventInterner) 
         ActionKind::PublishAll => Ok(Effect::PublishAll),
         ActionKind::StartTimeout { timer, delay, .. } => start_timeout(timer, *delay, action, scope),
         ActionKind::Raise(event) => Ok(Effect::Raise { event: scope.raised_event(event, events)? }),
-        ActionKind::Script(text) => Ok(Effect::Script { script: scope.script(text, action.place.0)? }),
+        ActionKind::Script(text) => Ok(Effect::Script { script: scope.script(text, action.position.0)? }),
     }
 }
 
@@ -172,7 +172,7 @@ fn assign(target: &Path, value: &Expression, scope: &NameContext<'_>) -> Compile
     let (field, kind) = scope.fields(source.entry, fields)?;
     if field.is_empty() {
         let message = format!("`{target}` is a whole message; an assignment sets one field");
-        let diagnostic = Diagnostic::error("E0145", target.place.0, message);
+        let diagnostic = Diagnostic::error("E0145", target.position.0, message);
         return Err(vec![diagnostic.with_hint(scope.fields_hint(target, source.entry))]);
     }
     let value = scope.term_of(value, &kind)?;
@@ -185,7 +185,7 @@ fn publish(message: &Path, scope: &NameContext<'_>) -> CompileResult<Effect> {
     if let Some(field) = fields.first() {
         let text = format!("`{}` follows the message; a message is published as a whole", field.text);
         return Err(vec![
-            Diagnostic::error("E0145", field.place.0, text).with_hint("assign the field first"),
+            Diagnostic::error("E0145", field.position.0, text).with_hint("assign the field first"),
         ]);
     }
     Ok(Effect::Publish { topic: source.entry.id })
@@ -198,7 +198,7 @@ fn refuse_foreign(path: &Path, origin: &Origin, verb: &str) -> CompileResult<()>
     }
     let message = format!("`{path}` is a variable of another publisher and cannot be {verb} by a chart");
     let hint = "a chart writes only its own messages: remove the prefix of the message";
-    Err(vec![Diagnostic::error("E0142", path.place.0, message).with_hint(hint)])
+    Err(vec![Diagnostic::error("E0142", path.position.0, message).with_hint(hint)])
 }
 
 fn start_timeout(
@@ -208,8 +208,11 @@ fn start_timeout(
     scope: &NameContext<'_>,
 ) -> CompileResult<Effect> {
     if delay < SHORTEST_DELAY {
-        let diagnostic =
-            Diagnostic::error("E0143", action.place.0, format!("the delay of timer `{timer}` is too short"));
+        let diagnostic = Diagnostic::error(
+            "E0143",
+            action.position.0,
+            format!("the delay of timer `{timer}` is too short"),
+        );
         return Err(vec![diagnostic.with_hint("a delay is at least `1ms`")]);
     }
     match scope.timer(timer) {
@@ -217,7 +220,7 @@ fn start_timeout(
         None => {
             let message = format!("the timer `{timer}` is not one of this blackboard");
             let hint = "a timer belongs to the blackboard of the transitions that start it";
-            Err(vec![Diagnostic::error("E0141", timer.place.0, message).with_hint(hint)])
+            Err(vec![Diagnostic::error("E0141", timer.position.0, message).with_hint(hint)])
         }
     }
 }

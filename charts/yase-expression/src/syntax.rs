@@ -62,7 +62,7 @@ pub struct Name {
     /// The name, without the backquotes it may have been written in.
     pub text: String,
     /// Its position.
-    pub place: TextPosition,
+    pub position: TextPosition,
 }
 
 /// Names separated by dots, one at least: `Ball.distance`,
@@ -74,7 +74,7 @@ pub struct Path {
     /// The names, one at least.
     pub segments: Vec<Name>,
     /// Its position.
-    pub place: TextPosition,
+    pub position: TextPosition,
 }
 
 impl Path {
@@ -117,13 +117,13 @@ pub struct Expression {
     /// Kind and operands.
     pub kind: ExpressionKind,
     /// Its position.
-    pub place: TextPosition,
+    pub position: TextPosition,
 }
 
 impl Expression {
     /// Its span.
     pub fn span(&self) -> Span {
-        self.place.0
+        self.position.0
     }
 
     /// Its direct subexpressions in textual order; none for names, values and predicates on paths.
@@ -182,7 +182,7 @@ impl Expression {
             }
             leaf => leaf.clone(),
         };
-        Expression { kind, place: self.place }
+        Expression { kind, position: self.position }
     }
 
     /// The first result of the closure in a pre-order walk of the expression.
@@ -313,7 +313,7 @@ pub struct Action {
     /// Kind and operands.
     pub kind: ActionKind,
     /// Its position.
-    pub place: TextPosition,
+    pub position: TextPosition,
 }
 
 /// Kind and operands of an [`Action`].

@@ -11,10 +11,10 @@ use yase::statechart::Statechart;
 pub(crate) fn native(
     script: &Script,
     is_found: &dyn Fn(&str) -> bool,
-    place: TextPosition,
+    position: TextPosition,
 ) -> Option<Expression> {
     let all = |operands: Vec<&Script>| {
-        operands.into_iter().map(|operand| native(operand, is_found, place)).collect::<Option<Vec<_>>>()
+        operands.into_iter().map(|operand| native(operand, is_found, position)).collect::<Option<Vec<_>>>()
     };
     let kind = match script.active_query()? {
         ActiveQuery::Known(value) => ExpressionKind::Bool(value),
@@ -22,13 +22,13 @@ pub(crate) fn native(
             if !is_found(state) {
                 return None;
             }
-            ExpressionKind::In(Name { text: state.to_owned(), place })
+            ExpressionKind::In(Name { text: state.to_owned(), position })
         }
-        ActiveQuery::Not(operand) => ExpressionKind::Not(Box::new(native(operand, is_found, place)?)),
+        ActiveQuery::Not(operand) => ExpressionKind::Not(Box::new(native(operand, is_found, position)?)),
         ActiveQuery::All(operands) => ExpressionKind::And(all(operands)?),
         ActiveQuery::Any(operands) => ExpressionKind::Or(all(operands)?),
     };
-    Some(Expression { kind, place })
+    Some(Expression { kind, position })
 }
 
 /// The condition of a chart in the language of the document, if it can be expressed there.
@@ -63,11 +63,11 @@ pub(crate) fn condition_text(chart: &Statechart, guard: &Expression) -> Option<S
 /// The name of an event as a path; a name that could denote a message becomes one segment.
 pub(crate) fn event_path(name: &str, span: Span) -> Path {
     const MESSAGES: [&str; 4] = ["Message", "Signal", "State", "Data"];
-    let place = TextPosition(span);
-    let segment = |text: &str| Name { text: text.to_owned(), place };
+    let position = TextPosition(span);
+    let segment = |text: &str| Name { text: text.to_owned(), position };
     let like_a_message = name.split('.').any(|token| MESSAGES.contains(&token));
     let segments = if like_a_message { vec![segment(name)] } else { name.split('.').map(segment).collect() };
-    Path { segments, place }
+    Path { segments, position }
 }
 
 /// Whether a condition or content of a chart is a script.

@@ -256,21 +256,24 @@ impl<'a> DocumentWriter<'a> {
             self.refuse(format!("`{path}` has {} STARTs; in SCXML it has one", starts.len()));
             return None;
         };
-        let ways = self.out_of(start);
-        let &[way] = ways.as_slice() else {
-            self.refuse(format!("the START of `{path}` has {} ways out; in SCXML it has one", ways.len()));
+        let transitions = self.out_of(start);
+        let &[transition] = transitions.as_slice() else {
+            self.refuse(format!(
+                "the START of `{path}` has {} ways out; in SCXML it has one",
+                transitions.len()
+            ));
             return None;
         };
         self.node_features_of_connector(start);
-        if way.expression.guard.is_some() || way.expression.trigger.is_some() {
+        if transition.expression.guard.is_some() || transition.expression.trigger.is_some() {
             self.refuse(format!(
                 "the START of `{path}` has a guard or trigger, which SCXML cannot represent"
             ));
         }
-        if !way.expression.actions.is_empty() {
-            return Some(way);
+        if !transition.expression.actions.is_empty() {
+            return Some(transition);
         }
-        let targets = self.targets(way);
+        let targets = self.targets(transition);
         self.writer.attribute("initial", &targets);
         None
     }
@@ -288,8 +291,8 @@ impl<'a> DocumentWriter<'a> {
         self.state_features(id);
     }
 
-    fn initial_element(&mut self, way: Option<&Transition>) {
-        if let Some(way) = way {
+    fn initial_element(&mut self, transition: Option<&Transition>) {
+        if let Some(way) = transition {
             self.writer.open("initial");
             self.transition(way);
             self.writer.close();
@@ -308,18 +311,18 @@ impl<'a> DocumentWriter<'a> {
             self.writer.attribute("id", &node.name);
         }
         self.writer.attribute("type", kind);
-        let ways = self.out_of(id);
-        if let &[way] = ways.as_slice() {
-            if way.expression.guard.is_some() || way.expression.trigger.is_some() {
+        let transitions = self.out_of(id);
+        if let &[transition] = transitions.as_slice() {
+            if transition.expression.guard.is_some() || transition.expression.trigger.is_some() {
                 let path = self.names.name(id);
                 self.refuse(format!(
                     "the way out of `{path}` has a guard or trigger, which SCXML cannot represent"
                 ));
             }
-            self.transition(way);
+            self.transition(transition);
         } else {
             let path = self.names.name(id);
-            self.refuse(format!("`{path}` has {} ways out; in SCXML it has one", ways.len()));
+            self.refuse(format!("`{path}` has {} ways out; in SCXML it has one", transitions.len()));
         }
         self.writer.close();
     }
@@ -406,7 +409,7 @@ impl<'a> DocumentWriter<'a> {
             self.refuse(format!("several transitions lead to `{path}`, which SCXML cannot represent"));
         }
         let ways = self.out_of(fork);
-        if ways.iter().any(|way| !way.expression.is_empty() || way.internal) {
+        if ways.iter().any(|transition| !transition.expression.is_empty() || transition.internal) {
             self.refuse(format!(
                 "transitions out of `{path}` have triggers, guards or actions, which SCXML cannot represent"
             ));

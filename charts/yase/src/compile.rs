@@ -182,7 +182,7 @@ pub(crate) struct BranchWeight {
     pub(crate) value: f64,
     pub(crate) segment: TransitionId,
     /// The sibling branches, including itself.
-    pub(crate) beside: BranchRange,
+    pub(crate) siblings: BranchRange,
 }
 
 /// A branch tree with a random choice behind a connector. Its paths may lie in several scopes, so
@@ -213,7 +213,7 @@ pub(crate) struct ChoiceNode {
 /// A HISTORY.
 #[derive(Clone, Debug)]
 pub(crate) struct HistoryNode {
-    pub(crate) place: NodeIndex,
+    pub(crate) node: NodeIndex,
     pub(crate) owner: NodeIndex,
     pub(crate) is_deep: bool,
     /// The paths out of it, used when nothing is recorded.
@@ -605,7 +605,7 @@ impl CompiledChart {
     pub fn scripts(&self) -> impl ExactSizeIterator<Item = ScriptEntry<'_>> {
         self.script_places.iter().enumerate().map(|(id, places)| {
             let id = ScriptId(id as u32);
-            ScriptEntry { id, text: self.scripts.text(id), places }
+            ScriptEntry { id, text: self.scripts.text(id), locations: places }
         })
     }
 

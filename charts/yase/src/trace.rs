@@ -107,7 +107,7 @@ impl<N: Fn(NodeId) -> String> fmt::Display for TraceLine<'_, N> {
         part(f, "defer in", &record.deferred.map(&self.name).unwrap_or_default())?;
         part(f, "exit", &nodes(record.exits))?;
         part(f, "then", &self.chain(record.taken))?;
-        part(f, "do", &join(record.effects, |&place| self.effect(place)))?;
+        part(f, "do", &join(record.effects, |&location| self.effect(location)))?;
         part(f, "enter", &nodes(record.entries))?;
         part(f, "read", &join(record.guards, |&(transition, value)| self.guard(transition, value)))
     }
@@ -152,9 +152,9 @@ impl<N: Fn(NodeId) -> String> TraceLine<'_, N> {
         format!("{} -> {}", (self.name)(transition.source), (self.name)(transition.target))
     }
 
-    fn effect(&self, place: ActionLocation) -> String {
+    fn effect(&self, location: ActionLocation) -> String {
         let statechart = self.chart.statechart();
-        let (actions, at) = match place {
+        let (actions, at) = match location {
             ActionLocation::Transition(id) => {
                 (&statechart.transition(id).expression.actions, self.segment(id))
             }

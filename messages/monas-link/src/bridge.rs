@@ -19,7 +19,7 @@ pub struct HubBridge {
     node: Node,
     /// One subscriber per topic that is sent.
     taps: Vec<EncodedSubscriber>,
-    places: Vec<PublishAs>,
+    publish_as: Vec<PublishAs>,
     receivers: BTreeMap<(Arc<str>, usize, String), Receiver>,
     publishers: BTreeMap<(usize, String), AnyPublisher>,
 }
@@ -31,14 +31,15 @@ impl HubBridge {
     /// # Errors
     /// The settings do not fit the hub's topics.
     pub fn new(hub: &Hub, settings: LinkSettings, incarnation: u64) -> Result<HubBridge, Error> {
-        let ResolvedSettings { node, places } = ResolvedSettings::new(settings, hub, incarnation)?;
+        let ResolvedSettings { node, publish_as: places } =
+            ResolvedSettings::new(settings, hub, incarnation)?;
         let node = Node::new(node)?;
         let tap = |path: &str| {
             hub.encoded_subscriber(path).map_err(|error| Error::new(ErrorKind::Settings, error.to_string()))
         };
         let taps = node.sends().iter().map(|topic| tap(&topic.path)).collect::<Result<_, _>>()?;
         let (others, own) = (BTreeMap::new(), BTreeMap::new());
-        Ok(HubBridge { hub: hub.clone(), node, taps, places, receivers: others, publishers: own })
+        Ok(HubBridge { hub: hub.clone(), node, taps, publish_as: places, receivers: others, publishers: own })
     }
 
     /// The protocol state with its counters.
@@ -95,7 +96,7 @@ impl HubBridge {
     fn bring_in(&mut self) {
         while let Some(delivery) = self.node.next_delivery() {
             let is_taken = delivery.payload.is_whole()
-                && match self.places[delivery.topic] {
+                && match self.publish_as[delivery.topic] {
                     PublishAs::Other => self.receive(&delivery),
                     PublishAs::Own => self.publish(&delivery),
                 }

@@ -94,7 +94,7 @@ impl LinkSettings {
 pub(crate) struct ResolvedSettings {
     pub(crate) node: NodeSettings,
     /// The host under which each received topic is published.
-    pub(crate) places: Vec<PublishAs>,
+    pub(crate) publish_as: Vec<PublishAs>,
 }
 
 impl ResolvedSettings {
@@ -130,12 +130,12 @@ impl ResolvedSettings {
                     .or_insert_with(|| (link_topic(declaration, Reliability::Reliable, 4), rule.publish_as));
             }
         }
-        let (receive, places) = receive.into_values().unzip();
+        let (receive, publish_as) = receive.into_values().unzip();
         let host = if settings.name.is_empty() { hub.host().to_owned() } else { settings.name };
         let LinkSettings { access, guests, budget, beat, .. } = settings;
         let send = send.into_values().collect();
         let node = NodeSettings { host, incarnation, send, receive, access, guests, budget, beat };
-        Ok(ResolvedSettings { node, places })
+        Ok(ResolvedSettings { node, publish_as })
     }
 }
 

@@ -102,14 +102,14 @@ impl ChannelOverview {
 /// address of the shared channel.
 #[derive(Default)]
 struct ChannelCounts {
-    places: BTreeMap<*const Channel, usize>,
+    indices: BTreeMap<*const Channel, usize>,
     channels: Vec<ChannelOverview>,
 }
 
 impl ChannelCounts {
     fn add(&mut self, message: &RecordedSample<'_>) {
         let address = Arc::as_ptr(&message.channel);
-        let place = match self.places.get(&address) {
+        let place = match self.indices.get(&address) {
             Some(&place) => place,
             None => self.place(address, message),
         };
@@ -136,7 +136,7 @@ impl ChannelCounts {
         // An address identifies a channel only while the channel lives: only those of kept channels
         // are stored.
         if known.is_none() {
-            self.places.insert(address, place);
+            self.indices.insert(address, place);
         }
         place
     }

@@ -51,7 +51,7 @@ pub struct Blackboard {
     hub: Hub,
     sender: Sender,
     number: u32,
-    places: Box<[TopicEntry]>,
+    entries: Box<[TopicEntry]>,
     /// The topics with an inbox, of each host, in order of first read.
     attached: RefCell<Vec<Channel>>,
     /// The topics with an outbox, in order of first write.
@@ -83,14 +83,14 @@ impl Hub {
 
 impl Blackboard {
     pub(crate) fn new(hub: Hub, sender: Sender, number: u32) -> Blackboard {
-        let places = hub.topics().iter().map(|_| TopicEntry::default()).collect();
+        let entries = hub.topics().iter().map(|_| TopicEntry::default()).collect();
         let random = Random::from_seed(default_seed(hub.host(), &sender.name));
         let head = hub.last_publication();
         Blackboard {
             hub,
             sender,
             number,
-            places,
+            entries,
             attached: RefCell::default(),
             written: Vec::new(),
             outbox: Vec::new(),
@@ -141,7 +141,7 @@ impl Blackboard {
     /// in which it was written. Readers see all of it or none.
     pub fn publish_all(&mut self, now: Timestamp) {
         for slot in self.outbox.drain(..) {
-            let Some(writing) = self.places[slot.index()].writing.as_mut() else { continue };
+            let Some(writing) = self.entries[slot.index()].writing.as_mut() else { continue };
             let Some((message, nth)) = writing.take_next() else { continue };
             let header = Header::local(&self.sender, slot, now);
             let origin = WriterId { blackboard: self.number, nth };
@@ -149,7 +149,7 @@ impl Blackboard {
         }
         self.hub.send(&self.sender, &mut self.outgoing, now);
         for OutgoingMessage { header, origin, evicted: left, .. } in self.outgoing.drain(..) {
-            if let Some(writing) = self.places[header.topic.index()].writing.as_mut() {
+            if let Some(writing) = self.entries[header.topic.index()].writing.as_mut() {
                 writing.complete(origin.nth, header, left);
             }
         }
@@ -184,7 +184,7 @@ impl Blackboard {
             return;
         }
         let mut open = self.open.take();
-        open.retain(|channel| self.places[channel.topic.index()].close(channel.host));
+        open.retain(|channel| self.entries[channel.topic.index()].close(channel.host));
         self.open = RefCell::new(open);
     }
 
@@ -210,7 +210,7 @@ impl Blackboard {
             exchange: &exchange,
             number: self.number,
             now: self.now,
-            places: &mut self.places,
+            entries: &mut self.entries,
             open: self.open.get_mut(),
             delivery: &mut self.delivery,
         };
@@ -235,7 +235,7 @@ impl Blackboard {
         if self.window.delivered < self.window.since {
             return false;
         }
-        let place = &mut self.places[channel.topic.index()];
+        let place = &mut self.entries[channel.topic.index()];
         let reader = place.reader(self.number, channel.host);
         let Some(reading) = place.inbox_mut(channel.host) else { return false };
         let was_open = reading.is_open();
@@ -254,11 +254,11 @@ impl Blackboard {
 
     /// Whether messages of a channel are delivered here.
     fn reads(&self, channel: Channel) -> bool {
-        self.places.get(channel.topic.index()).is_some_and(|place| place.inbox(channel.host).is_some())
+        self.entries.get(channel.topic.index()).is_some_and(|entry| entry.inbox(channel.host).is_some())
     }
 
     fn reader(&self, channel: Channel) -> ReaderView {
-        self.places[channel.topic.index()].reader(self.number, channel.host)
+        self.entries[channel.topic.index()].reader(self.number, channel.host)
     }
 }
 
@@ -267,7 +267,7 @@ struct DeliveryPass<'a> {
     exchange: &'a HubState,
     number: u32,
     now: Timestamp,
-    places: &'a mut [TopicEntry],
+    entries: &'a mut [TopicEntry],
     open: &'a mut Vec<Channel>,
     delivery: &'a mut Delivery,
 }
@@ -275,9 +275,9 @@ struct DeliveryPass<'a> {
 impl DeliveryPass<'_> {
     /// Delivers what was published on a channel if the channel is read here.
     fn channel(&mut self, channel: Channel) {
-        let place = &mut self.places[channel.topic.index()];
-        let reader = place.reader(self.number, channel.host);
-        let Some(reading) = place.inbox_mut(channel.host) else { return };
+        let entry = &mut self.entries[channel.topic.index()];
+        let reader = entry.reader(self.number, channel.host);
+        let Some(reading) = entry.inbox_mut(channel.host) else { return };
         let Some(ring) = self.exchange.ring(channel) else { return };
         let was_open = reading.is_open();
         reading.deliver(ring, reader, self.delivery);
@@ -433,8 +433,8 @@ impl Blackboard {
     /// The inbox of a channel, created if necessary.
     #[inline]
     fn attach(&self, channel: Channel) -> Option<&Inbox> {
-        let place = self.places.get(channel.topic.index())?;
-        match place.inbox(channel.host) {
+        let entry = self.entries.get(channel.topic.index())?;
+        match entry.inbox(channel.host) {
             Some(reading) => Some(reading),
             None => Some(self.keep(channel, self.attached_reading(channel)?)),
         }
@@ -453,7 +453,7 @@ impl Blackboard {
             self.open.borrow_mut().push(channel);
         }
         self.attached.borrow_mut().push(channel);
-        self.places[channel.topic.index()].insert_inbox(channel.host, reading)
+        self.entries[channel.topic.index()].insert_inbox(channel.host, reading)
     }
 }
 
@@ -555,7 +555,7 @@ impl Blackboard {
 
     fn outbox(&mut self, slot: TopicSlot) -> Option<&mut Outbox> {
         let topic = self.hub.declaration(slot)?;
-        let writing = &mut self.places.get_mut(slot.index())?.writing;
+        let writing = &mut self.entries.get_mut(slot.index())?.writing;
         if writing.is_none() {
             self.written.push(slot);
         }

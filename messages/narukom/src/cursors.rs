@@ -10,7 +10,7 @@ use crate::topic::RetentionKind;
 pub(crate) struct Cursors {
     host: HostId,
     /// Sorted by topic.
-    places: Vec<(TopicSlot, u64)>,
+    positions: Vec<(TopicSlot, u64)>,
     /// The number of the last publication that was checked.
     seen: u64,
     lost: u64,
@@ -34,7 +34,7 @@ impl Cursors {
         let states = slots.iter().filter(|slot| is_state(slot));
         states.filter_map(|slot| ring(*slot)?.newest()).for_each(&mut take);
         let places = slots.iter().map(|slot| (*slot, ring(*slot).map_or(0, Ring::next)));
-        Cursors { host, places: places.collect(), seen: exchange.last_publication(), lost: 0 }
+        Cursors { host, positions: places.collect(), seen: exchange.last_publication(), lost: 0 }
     }
 
     /// Whether no publication since the last check is on one of its topics.
@@ -51,7 +51,7 @@ impl Cursors {
     }
 
     fn reads(&self, Channel { topic, host }: Channel) -> bool {
-        host == self.host && self.places.binary_search_by_key(&topic, |(slot, _)| *slot).is_ok()
+        host == self.host && self.positions.binary_search_by_key(&topic, |(slot, _)| *slot).is_ok()
     }
 
     /// The number of the last publication that was checked.
@@ -64,7 +64,7 @@ impl Cursors {
     }
 
     pub(crate) fn topics(&self) -> impl Iterator<Item = TopicSlot> {
-        self.places.iter().map(|(slot, _)| *slot)
+        self.positions.iter().map(|(slot, _)| *slot)
     }
 
     /// Fetches what was published since the last call, topic by topic. Unchanged topics cost
@@ -74,18 +74,18 @@ impl Cursors {
             Some(moved) => {
                 let host = self.host;
                 for Channel { topic, .. } in moved.filter(|channel| channel.host == host) {
-                    if let Ok(place) = self.places.binary_search_by_key(&topic, |(slot, _)| *slot) {
+                    if let Ok(place) = self.positions.binary_search_by_key(&topic, |(slot, _)| *slot) {
                         self.fetch_topic(exchange, place, &mut take);
                     }
                 }
             }
-            None => (0..self.places.len()).for_each(|place| self.fetch_topic(exchange, place, &mut take)),
+            None => (0..self.positions.len()).for_each(|place| self.fetch_topic(exchange, place, &mut take)),
         }
         self.seen = exchange.last_publication();
     }
 
     fn fetch_topic(&mut self, exchange: &HubState, place: usize, take: &mut impl FnMut(&RingEntry)) {
-        let (topic, cursor) = &mut self.places[place];
+        let (topic, cursor) = &mut self.positions[place];
         let Some(ring) = exchange.ring(Channel { topic: *topic, host: self.host }) else { return };
         self.lost += ring.missed(*cursor);
         ring.from(*cursor).for_each(take);

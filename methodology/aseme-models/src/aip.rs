@@ -26,7 +26,7 @@ pub struct Participant {
     /// Its behaviour: the right-hand side of its formula, and further formulas in full below that.
     pub liveness: String,
     /// Its position in the source.
-    pub place: TextPosition,
+    pub position: TextPosition,
     /// The position of its formulas in the source.
     pub liveness_place: TextPosition,
 }
@@ -39,14 +39,14 @@ pub struct Protocol {
     /// Its name.
     pub name: String,
     /// Its position in the source.
-    pub place: TextPosition,
+    pub position: TextPosition,
 }
 
 const PARTICIPANTS: usize = 0;
 const PROTOCOLS: usize = 1;
 
 static METAMODEL: Metamodel = Metamodel {
-    word: "AIP",
+    header: "AIP",
     root: "AIPmodel",
     prefix: "AIP",
     // The first is misspelt in every file of the original tools.
@@ -56,7 +56,7 @@ static METAMODEL: Metamodel = Metamodel {
     ],
     classes: &[
         Class {
-            word: "Participant",
+            header: "Participant",
             feature: "participants",
             least: 2,
             title: 0,
@@ -69,7 +69,7 @@ static METAMODEL: Metamodel = Metamodel {
             subclasses: &[],
         },
         Class {
-            word: "Protocol",
+            header: "Protocol",
             feature: "protocols",
             least: 1,
             title: 1,
@@ -88,13 +88,13 @@ impl TypedModel for Aip {
             engaging_rules: object.text(1),
             outcomes: object.text(2),
             liveness: object.text(3),
-            place: object.place,
+            position: object.position,
             liveness_place: object.place_of(3),
         };
         let protocol = |object: &Object| Protocol {
             participants: object.links(0).to_vec(),
             name: object.text(1),
-            place: object.place,
+            position: object.position,
         };
         Aip {
             participants: instance.of(PARTICIPANTS).iter().map(participant).collect(),
@@ -105,14 +105,14 @@ impl TypedModel for Aip {
     fn to_instance(&self) -> ModelInstance {
         let participant = |it: &Participant| {
             let texts = [&it.name, &it.engaging_rules, &it.outcomes, &it.liveness];
-            Object::new(texts.map(|text| FeatureValue::Text(text.clone())).into(), it.place)
+            Object::new(texts.map(|text| FeatureValue::Text(text.clone())).into(), it.position)
         };
         let protocol = |protocol: &Protocol| {
             let values = vec![
                 FeatureValue::Links(protocol.participants.clone()),
                 FeatureValue::Text(protocol.name.clone()),
             ];
-            Object::new(values, protocol.place)
+            Object::new(values, protocol.position)
         };
         let participants = self.participants.iter().map(participant).collect();
         ModelInstance { objects: vec![participants, self.protocols.iter().map(protocol).collect()] }

@@ -22,7 +22,7 @@ pub fn apply_diagram(chart: &mut Iac, model: &str, diagram: &str) -> Result<usiz
     let (model, diagram) = (xmi::parse(model)?, xmi::parse(diagram)?);
     let paths = XmiPaths::new(&model);
     let starts: BTreeMap<usize, usize> =
-        chart.nodes.iter().enumerate().map(|(index, node)| (node.place.0.start, index)).collect();
+        chart.nodes.iter().enumerate().map(|(index, node)| (node.position.0.start, index)).collect();
     let mut count = 0;
     for shape in diagram.descendants().filter(|node| node.tag_name().name() == "children") {
         let (Some(reference), Some(frame)) = (reference(shape), frame(shape)) else { continue };

@@ -62,7 +62,7 @@ pub(crate) struct Comments {
     /// Comments on the lines above.
     pub(crate) above: Vec<String>,
     /// The comment after the text on the same line; empty if there is none.
-    pub(crate) beside: String,
+    pub(crate) trailing: String,
 }
 
 /// A text with its position, without surrounding blanks.

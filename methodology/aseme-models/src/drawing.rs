@@ -107,7 +107,7 @@ fn of_role(role: &SrmFile, read: &[Diagnostic]) -> (Statechart, Vec<Diagnostic>)
 fn quoted(text: &str) -> TransitionExpression {
     let text: Vec<&str> = text.split_whitespace().collect();
     let place = TextPosition::default();
-    let name = Name { text: text.join(" ").replace('`', "'"), place };
-    let trigger = Some(Trigger::OneOf(vec![Path { segments: vec![name], place }]));
+    let name = Name { text: text.join(" ").replace('`', "'"), position: place };
+    let trigger = Some(Trigger::OneOf(vec![Path { segments: vec![name], position: place }]));
     TransitionExpression { trigger, ..TransitionExpression::default() }
 }

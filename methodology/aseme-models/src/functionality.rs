@@ -34,16 +34,16 @@ pub struct FunctionalityRow {
     /// Its algorithm.
     pub algorithm: String,
     /// Its position in the source.
-    pub place: TextPosition,
+    pub position: TextPosition,
 }
 
 static METAMODEL: Metamodel = Metamodel {
-    word: "FT",
+    header: "FT",
     root: "FTmodel",
     prefix: "FT",
     namespaces: &[],
     classes: &[Class {
-        word: "Activity",
+        header: "Activity",
         feature: "rows",
         least: 0,
         title: 2,
@@ -102,14 +102,14 @@ impl TypedModel for FunctionalityTable {
             environment: object.text(5),
             permissions: object.text(6),
             algorithm: object.text(7),
-            place: object.place,
+            position: object.position,
         };
         FunctionalityTable { rows: instance.of(0).iter().map(row).collect() }
     }
 
     fn to_instance(&self) -> ModelInstance {
         let row = |row: &FunctionalityRow| {
-            Object::new(row.cells().map(|cell| FeatureValue::Text(cell.into())).into(), row.place)
+            Object::new(row.cells().map(|cell| FeatureValue::Text(cell.into())).into(), row.position)
         };
         ModelInstance { objects: vec![self.rows.iter().map(row).collect()] }
     }

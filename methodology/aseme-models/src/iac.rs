@@ -110,7 +110,7 @@ pub struct IacNode {
     /// Its layout, which only the text form represents.
     pub frame: Frame,
     /// Its position in the source.
-    pub place: TextPosition,
+    pub position: TextPosition,
 }
 
 /// Settings of a state, as in the section `States:` of a role.
@@ -148,7 +148,7 @@ pub struct IacTransition {
     /// The corners of its line in drawings.
     pub bends: Vec<Point>,
     /// Its position in the source.
-    pub place: TextPosition,
+    pub position: TextPosition,
     /// The position of its expression in the source.
     pub te_place: TextPosition,
 }
@@ -174,7 +174,7 @@ pub struct Variable {
     /// Its type: `topic.Kind.Message` in files since 2012.
     pub kind: String,
     /// Its position in the source.
-    pub place: TextPosition,
+    pub position: TextPosition,
 }
 
 /// The dialects of XMI in which statecharts are kept.

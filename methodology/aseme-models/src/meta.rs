@@ -24,7 +24,7 @@ pub(crate) use to_xmi::to_xmi;
 /// The metamodel of a kind of model.
 pub(crate) struct Metamodel {
     /// The header that a text starts with.
-    pub(crate) word: &'static str,
+    pub(crate) header: &'static str,
     /// The root element of XMI.
     pub(crate) root: &'static str,
     /// The prefix of the root element.
@@ -38,7 +38,7 @@ pub(crate) struct Metamodel {
 /// A class of objects.
 pub(crate) struct Class {
     /// Its header in text.
-    pub(crate) word: &'static str,
+    pub(crate) header: &'static str,
     /// The feature of the root that holds its objects.
     pub(crate) feature: &'static str,
     /// The minimum number of objects.
@@ -58,7 +58,7 @@ pub(crate) struct Feature {
     /// In XMI of older metamodels.
     pub(crate) older: Option<&'static str>,
     /// In text.
-    pub(crate) word: &'static str,
+    pub(crate) key: &'static str,
     pub(crate) kind: FeatureKind,
 }
 
@@ -93,9 +93,9 @@ pub(crate) struct ModelInstance {
 pub(crate) struct Object {
     pub(crate) values: Vec<FeatureValue>,
     /// Its position in the source.
-    pub(crate) place: TextPosition,
+    pub(crate) position: TextPosition,
     /// The position of each feature's value.
-    pub(crate) places: Vec<TextPosition>,
+    pub(crate) value_positions: Vec<TextPosition>,
 }
 
 /// The value of a feature.
@@ -112,7 +112,7 @@ pub(crate) enum FeatureValue {
 
 impl Feature {
     const fn new(name: &'static str, word: &'static str, kind: FeatureKind) -> Feature {
-        Feature { name, older: None, word, kind }
+        Feature { name, older: None, key: word, kind }
     }
 
     /// A text.
@@ -142,7 +142,7 @@ impl Feature {
 
     /// Sets another name in text.
     pub(crate) const fn called(self, word: &'static str) -> Feature {
-        Feature { word, ..self }
+        Feature { key: word, ..self }
     }
 
     /// Sets the name in older metamodels.
@@ -160,7 +160,7 @@ impl Metamodel {
     /// Whether objects of a class are linked to by others.
     pub(crate) fn is_linked(&self, class: &Class) -> bool {
         let links_to = |feature: &Feature| match feature.kind {
-            FeatureKind::Links { class: target, .. } => self.classes[target].word == class.word,
+            FeatureKind::Links { class: target, .. } => self.classes[target].header == class.header,
             _ => false,
         };
         self.classes.iter().flat_map(|class| class.features).any(links_to)
@@ -177,7 +177,11 @@ impl Class {
             FeatureKind::Opposite { .. } => FeatureValue::Derived,
         };
         let values: Vec<FeatureValue> = self.features.iter().map(value).collect();
-        Object { places: vec![TextPosition::default(); values.len()], values, place: TextPosition::default() }
+        Object {
+            value_positions: vec![TextPosition::default(); values.len()],
+            values,
+            position: TextPosition::default(),
+        }
     }
 }
 
@@ -197,8 +201,8 @@ impl ModelInstance {
 
 impl Object {
     /// An object with these values.
-    pub(crate) fn new(values: Vec<FeatureValue>, place: TextPosition) -> Object {
-        Object { places: vec![TextPosition::default(); values.len()], values, place }
+    pub(crate) fn new(values: Vec<FeatureValue>, position: TextPosition) -> Object {
+        Object { value_positions: vec![TextPosition::default(); values.len()], values, position }
     }
 
     /// The text of a feature.
@@ -227,9 +231,9 @@ impl Object {
 
     /// The position of a feature's value, or of the object if there is none.
     pub(crate) fn place_of(&self, feature: usize) -> TextPosition {
-        match self.places.get(feature) {
-            Some(place) if place.0 != yase::Span::default() => *place,
-            _ => self.place,
+        match self.value_positions.get(feature) {
+            Some(position) if position.0 != yase::Span::default() => *position,
+            _ => self.position,
         }
     }
 }

@@ -126,11 +126,11 @@ pub fn subjects(chart: &Iac) -> BTreeMap<String, Vec<(String, String)>> {
 
 fn fits(variable: &Variable, vocabulary: &TypeEnvironment) -> Option<Diagnostic> {
     let (topic, kind, message) = parts(&variable.kind)?;
-    let (place, name) = (variable.place.0, &variable.name);
+    let (span, name) = (variable.position.0, &variable.name);
     if !vocabulary.messages.iter().any(|known| known.name == message) {
         let names = vocabulary.messages.iter().map(|known| known.name.as_str());
         let text = format!("the variable `{name}` has the unknown message type `{message}`");
-        return Some(Diagnostic::error("E0881", place, text).with_nearest(message, names));
+        return Some(Diagnostic::error("E0881", span, text).with_nearest(message, names));
     }
     let known = vocabulary
         .topics
@@ -141,13 +141,13 @@ fn fits(variable: &Variable, vocabulary: &TypeEnvironment) -> Option<Diagnostic>
             "the variable `{name}` is of `{message}`, but `{}` carries `{}`",
             known.path, known.message
         );
-        return Some(Diagnostic::error("E0882", place, text));
+        return Some(Diagnostic::error("E0882", span, text));
     }
     let is_kept = kind_word(known.kind);
     (is_kept != kind).then(|| {
         let text =
             format!("the variable `{name}` has the retention `{kind}`, but `{}` has `{is_kept}`", known.path);
-        Diagnostic::error("E0883", place, text)
+        Diagnostic::error("E0883", span, text)
     })
 }
 

@@ -90,9 +90,9 @@ fn with_new_names(file: &SrmFile, entries: &[SrmEntry], chart: &Statechart) -> (
     // from the end, so that places before stay true
     for entry in entries.iter().rev().filter(is_lost) {
         if let Some(new) = renamed::with_new_names(file, entry, chart) {
-            let place = entry.span.start..entry.span.end;
-            found.push(renamed::renamed(entry, &text[place.clone()], &new));
-            text.replace_range(place, &new);
+            let span = entry.span.start..entry.span.end;
+            found.push(renamed::renamed(entry, &text[span.clone()], &new));
+            text.replace_range(span, &new);
         }
     }
     found.reverse();
@@ -248,15 +248,15 @@ impl RefinementTransfer {
         let own = &mut self.placed.layout;
         let nodes = scratch.layout.frames.iter();
         let taken = nodes.clone().find(|(id, frame)| own.frames.get(id).is_some_and(|own| own != *frame));
-        let ways = scratch.layout.bends.iter();
-        let way = ways.clone().find(|(id, bends)| own.bends.get(id).is_some_and(|own| own != *bends));
+        let transitions = scratch.layout.bends.iter();
+        let way = transitions.clone().find(|(id, bends)| own.bends.get(id).is_some_and(|own| own != *bends));
         let taken = taken.map(|(&id, _)| path::shortest_path(&self.plain, id));
         let taken = taken.or(way.map(|(&id, _)| path::shortest_transition(&scratch, id)));
         if let Some(taken) = taken {
             return Err(conflict(&entry.text, &taken));
         }
         let is_new = nodes.clone().any(|(id, _)| !own.frames.contains_key(id))
-            || ways.clone().any(|(id, _)| !own.bends.contains_key(id));
+            || transitions.clone().any(|(id, _)| !own.bends.contains_key(id));
         own.frames.extend(scratch.layout.frames);
         own.bends.extend(scratch.layout.bends);
         Ok(is_new)

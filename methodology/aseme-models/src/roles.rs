@@ -29,7 +29,7 @@ pub struct RoleActivity {
     /// The functionality that implements it, by its index in [`SystemRoles::functionalities`].
     pub functionality: Option<usize>,
     /// Its position in the source.
-    pub place: TextPosition,
+    pub position: TextPosition,
 }
 
 /// The ability to reach a goal.
@@ -42,7 +42,7 @@ pub struct Capability {
     /// Its description.
     pub description: String,
     /// Its position in the source.
-    pub place: TextPosition,
+    pub position: TextPosition,
 }
 
 /// A role of an agent.
@@ -57,7 +57,7 @@ pub struct Role {
     /// Its capabilities, by their indices in [`SystemRoles::capabilities`].
     pub capabilities: Vec<usize>,
     /// Its position in the source.
-    pub place: TextPosition,
+    pub position: TextPosition,
     /// The position of its formulas in the source.
     pub liveness_place: TextPosition,
 }
@@ -76,7 +76,7 @@ pub struct Functionality {
     /// Its algorithm.
     pub algorithm: String,
     /// Its position in the source.
-    pub place: TextPosition,
+    pub position: TextPosition,
 }
 
 const ACTIVITIES: usize = 0;
@@ -85,13 +85,13 @@ const ROLES: usize = 2;
 const FUNCTIONALITIES: usize = 3;
 
 static METAMODEL: Metamodel = Metamodel {
-    word: "SRM",
+    header: "SRM",
     root: "SRMmodel",
     prefix: "SRM",
     namespaces: &["http://www.amcl.tuc.gr/aseme/metamodels/SRM"],
     classes: &[
         Class {
-            word: "Activity",
+            header: "Activity",
             feature: "activities",
             least: 0,
             title: 0,
@@ -99,7 +99,7 @@ static METAMODEL: Metamodel = Metamodel {
             subclasses: &[],
         },
         Class {
-            word: "Capability",
+            header: "Capability",
             feature: "capabilities",
             least: 0,
             title: 0,
@@ -113,7 +113,7 @@ static METAMODEL: Metamodel = Metamodel {
             subclasses: &[],
         },
         Class {
-            word: "Role",
+            header: "Role",
             feature: "roles",
             least: 1,
             title: 2,
@@ -128,7 +128,7 @@ static METAMODEL: Metamodel = Metamodel {
             subclasses: &[],
         },
         Class {
-            word: "Functionality",
+            header: "Functionality",
             feature: "functionalities",
             least: 1,
             title: 3,
@@ -173,24 +173,27 @@ fn activity(object: &Object) -> RoleActivity {
     RoleActivity {
         name: object.text(0),
         functionality: object.links(1).first().copied(),
-        place: object.place,
+        position: object.position,
     }
 }
 
 fn activity_object(activity: &RoleActivity) -> Object {
     let functionality = FeatureValue::Links(activity.functionality.into_iter().collect());
-    Object::new(vec![FeatureValue::Text(activity.name.clone()), functionality], activity.place)
+    Object::new(vec![FeatureValue::Text(activity.name.clone()), functionality], activity.position)
 }
 
 fn capability(object: &Object) -> Capability {
     let activities = object.links(1).to_vec();
-    Capability { name: object.text(0), activities, description: object.text(2), place: object.place }
+    Capability { name: object.text(0), activities, description: object.text(2), position: object.position }
 }
 
 fn capability_object(capability: &Capability) -> Object {
     let (name, description) = (capability.name.clone(), capability.description.clone());
     let activities = FeatureValue::Links(capability.activities.clone());
-    Object::new(vec![FeatureValue::Text(name), activities, FeatureValue::Text(description)], capability.place)
+    Object::new(
+        vec![FeatureValue::Text(name), activities, FeatureValue::Text(description)],
+        capability.position,
+    )
 }
 
 fn role(object: &Object) -> Role {
@@ -199,7 +202,7 @@ fn role(object: &Object) -> Role {
         liveness: object.text(1),
         name: object.text(2),
         capabilities: object.links(3).to_vec(),
-        place: object.place,
+        position: object.position,
         liveness_place: object.place_of(1),
     }
 }
@@ -210,7 +213,7 @@ fn role_object(role: &Role) -> Object {
     let (activities, capabilities) = (role.activities.clone(), role.capabilities.clone());
     Object::new(
         vec![FeatureValue::Links(activities), liveness, name, FeatureValue::Links(capabilities)],
-        role.place,
+        role.position,
     )
 }
 
@@ -221,12 +224,12 @@ fn functionality(object: &Object) -> Functionality {
         environment: object.text(2),
         description: object.text(3),
         algorithm: object.text(4),
-        place: object.place,
+        position: object.position,
     }
 }
 
 fn functionality_object(it: &Functionality) -> Object {
     let texts = [&it.permissions, &it.technology, &it.environment, &it.description, &it.algorithm];
     let texts = texts.map(|text| FeatureValue::Text(text.clone()));
-    Object::new(texts.into_iter().chain([FeatureValue::Derived]).collect(), it.place)
+    Object::new(texts.into_iter().chain([FeatureValue::Derived]).collect(), it.position)
 }

@@ -19,7 +19,7 @@ pub struct Actor {
     /// Its name.
     pub name: String,
     /// Its position in the source.
-    pub place: TextPosition,
+    pub position: TextPosition,
 }
 
 /// A goal of an actor, and the actors it depends on.
@@ -34,20 +34,20 @@ pub struct ActorGoal {
     /// The actors that are to achieve it, by their indices in [`Sag::actors`].
     pub dependees: Vec<usize>,
     /// Its position in the source.
-    pub place: TextPosition,
+    pub position: TextPosition,
 }
 
 const GOALS: usize = 0;
 const ACTORS: usize = 1;
 
 static METAMODEL: Metamodel = Metamodel {
-    word: "SAG",
+    header: "SAG",
     root: "SAGmodel",
     prefix: "SAG",
     namespaces: &["http://www.amcl.tuc.gr/aseme/metamodels/SAG"],
     classes: &[
         Class {
-            word: "Goal",
+            header: "Goal",
             feature: "goals",
             least: 1,
             title: 1,
@@ -60,7 +60,7 @@ static METAMODEL: Metamodel = Metamodel {
             subclasses: &[],
         },
         Class {
-            word: "Actor",
+            header: "Actor",
             feature: "actors",
             least: 1,
             title: 1,
@@ -79,9 +79,9 @@ impl TypedModel for Sag {
             name: object.text(1),
             depender: object.links(2).first().copied(),
             dependees: object.links(3).to_vec(),
-            place: object.place,
+            position: object.position,
         };
-        let actor = |object: &Object| Actor { name: object.text(1), place: object.place };
+        let actor = |object: &Object| Actor { name: object.text(1), position: object.position };
         Sag {
             goals: instance.of(GOALS).iter().map(goal).collect(),
             actors: instance.of(ACTORS).iter().map(actor).collect(),
@@ -93,10 +93,10 @@ impl TypedModel for Sag {
             let (depender, dependees) = (goal.depender.into_iter().collect(), goal.dependees.clone());
             let texts = [&goal.requirements, &goal.name].map(|text| FeatureValue::Text(text.clone()));
             let links = [FeatureValue::Links(depender), FeatureValue::Links(dependees)];
-            Object::new(texts.into_iter().chain(links).collect(), goal.place)
+            Object::new(texts.into_iter().chain(links).collect(), goal.position)
         };
         let actor = |actor: &Actor| {
-            Object::new(vec![FeatureValue::Derived, FeatureValue::Text(actor.name.clone())], actor.place)
+            Object::new(vec![FeatureValue::Derived, FeatureValue::Text(actor.name.clone())], actor.position)
         };
         ModelInstance {
             objects: vec![self.goals.iter().map(goal).collect(), self.actors.iter().map(actor).collect()],

@@ -22,7 +22,7 @@ pub struct SystemRole {
     /// The kind of the role.
     pub kind: RoleKind,
     /// Its position in the source.
-    pub place: TextPosition,
+    pub position: TextPosition,
 }
 
 /// The kind of a role.
@@ -53,7 +53,7 @@ pub struct UseCase {
     /// Its specification.
     pub specified_by: String,
     /// Its position in the source.
-    pub place: TextPosition,
+    pub position: TextPosition,
 }
 
 const ROLES: usize = 0;
@@ -69,13 +69,13 @@ const KINDS: [(&str, RoleKind); 5] = [
 ];
 
 static METAMODEL: Metamodel = Metamodel {
-    word: "SUC",
+    header: "SUC",
     root: "SUCmodel",
     prefix: "SUC",
     namespaces: &["http://www.amcl.tuc.gr/aseme/metamodels/SUC"],
     classes: &[
         Class {
-            word: "Role",
+            header: "Role",
             feature: "roles",
             least: 2,
             title: 1,
@@ -87,7 +87,7 @@ static METAMODEL: Metamodel = Metamodel {
             subclasses: &[("SystemRole", 2, 1), ("HumanRole", 2, 4)],
         },
         Class {
-            word: "UseCase",
+            header: "UseCase",
             feature: "usecases",
             least: 1,
             title: 2,
@@ -109,14 +109,14 @@ impl TypedModel for Suc {
         let role = |object: &Object| SystemRole {
             name: object.text(1),
             kind: KINDS.get(object.choice(2)).map_or(RoleKind::Abstract, |(_, kind)| *kind),
-            place: object.place,
+            position: object.position,
         };
         let usecase = |object: &Object| UseCase {
             participants: object.links(0).to_vec(),
             includes: object.links(1).to_vec(),
             name: object.text(2),
             specified_by: object.text(3),
-            place: object.place,
+            position: object.position,
         };
         Suc {
             roles: instance.of(ROLES).iter().map(role).collect(),
@@ -133,14 +133,14 @@ impl TypedModel for Suc {
                     FeatureValue::Text(role.name.clone()),
                     FeatureValue::Choice(kind),
                 ],
-                role.place,
+                role.position,
             )
         };
         let usecase = |usecase: &UseCase| {
             let links =
                 [&usecase.participants, &usecase.includes].map(|links| FeatureValue::Links(links.clone()));
             let texts = [&usecase.name, &usecase.specified_by].map(|text| FeatureValue::Text(text.clone()));
-            Object::new(links.into_iter().chain(texts).collect(), usecase.place)
+            Object::new(links.into_iter().chain(texts).collect(), usecase.position)
         };
         ModelInstance {
             objects: vec![self.roles.iter().map(role).collect(), self.usecases.iter().map(usecase).collect()],

@@ -203,7 +203,7 @@ impl AbstractionBuilder {
             ExpressionKind::TimeoutCheck(path) if !self.is_timer(path, board) => ExpressionKind::Bool(false),
             other => other.clone(),
         };
-        Expression { kind, place: guard.place }
+        Expression { kind, position: guard.position }
     }
 
     /// Keeps parts about data together, so that dependencies between them are preserved.
@@ -216,9 +216,9 @@ impl AbstractionBuilder {
             [] => None,
             [one] => Some(self.condition(one)),
             [first, ..] => {
-                let place = first.place;
+                let position = first.position;
                 let kind = if all { ExpressionKind::And(data) } else { ExpressionKind::Or(data) };
-                Some(self.condition(&Expression { kind, place }))
+                Some(self.condition(&Expression { kind, position }))
             }
         });
         parts
@@ -238,7 +238,7 @@ impl AbstractionBuilder {
                 }
                 ActionKind::ProcessMessages | ActionKind::Script(_) => ActionKind::Script(action.to_string()),
             };
-            Some(Action { kind, place: action.place })
+            Some(Action { kind, position: action.position })
         });
         made.collect()
     }
@@ -249,7 +249,7 @@ impl AbstractionBuilder {
         }
         let text = condition.to_string();
         self.conditions.entry(text.clone()).or_insert_with(|| condition.clone());
-        Expression { kind: ExpressionKind::Script(text), place: condition.place }
+        Expression { kind: ExpressionKind::Script(text), position: condition.position }
     }
 
     fn is_timer(&self, path: &Path, board: yase::NodeId) -> bool {
@@ -279,7 +279,7 @@ fn trigger(trigger: &Trigger) -> Trigger {
 
 /// An event with a single name, so that it is not resolved as a message.
 fn plain(event: &Path) -> Path {
-    Path { segments: vec![Name { text: event.text(), place: event.place }], place: event.place }
+    Path { segments: vec![Name { text: event.text(), position: event.position }], position: event.position }
 }
 
 /// The paths that triggers name.

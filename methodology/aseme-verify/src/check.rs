@@ -173,7 +173,7 @@ pub const CHECKS: &[Check] = {
 #[non_exhaustive]
 pub struct CheckReport {
     /// The kind of the model; none if it could not be read.
-    pub what: Option<String>,
+    pub kind: Option<String>,
     /// The findings, in the order of the file.
     pub findings: Vec<Finding>,
     /// The extent of the exploration, if the chart was explored.
@@ -192,7 +192,7 @@ impl CheckReport {
 
     /// Whether the model could not be read; then no checks were run.
     pub fn is_unreadable(&self) -> bool {
-        self.what.is_none()
+        self.kind.is_none()
     }
 
     /// The paths of the states that a finding names, by the names that its message and its hint
@@ -226,7 +226,7 @@ pub fn check(source: &Arc<Source>, settings: &CheckSettings) -> CheckReport {
         Some((model, _)) if !read.iter().any(Diagnostic::is_error) => {
             let what = format!("a model of the kind {}", model.kind());
             CheckReport {
-                what: Some(what),
+                kind: Some(what),
                 findings: findings(read, roles::check(&model, settings.world.as_ref())),
                 ..CheckReport::default()
             }
@@ -300,7 +300,7 @@ fn charted(
     let mut findings = findings(read, found);
     findings.extend(explored);
     CheckReport {
-        what: Some(format!("{nodes} nodes, {transitions} transitions")),
+        kind: Some(format!("{nodes} nodes, {transitions} transitions")),
         findings,
         explored: extent,
         is_stopped,

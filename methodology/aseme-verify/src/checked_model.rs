@@ -21,7 +21,7 @@ use crate::diagnostic_names::DiagnosticNames;
 /// A chart that is checked.
 pub(crate) struct CheckedModel {
     pub(crate) chart: Statechart,
-    pub(crate) places: SourceSpans,
+    pub(crate) spans: SourceSpans,
     /// The semantics in which the chart is interpreted.
     pub(crate) semantics: Semantics,
     /// The formulas that the chart was generated from.
@@ -76,15 +76,15 @@ pub(crate) fn of_chart(iac: &Iac) -> (CheckedModel, Vec<Diagnostic>) {
     let (chart, found) = iac.to_statechart();
     let count = iac.nodes.len();
     let transitions = || iac.transitions.iter().filter(|it| it.source < count && it.target < count);
-    let literal = |place: TextPosition, text: &str| place.0.end - place.0.start == text.len();
+    let literal = |position: TextPosition, text: &str| position.0.end - position.0.start == text.len();
     let guards = transitions().zip(chart.transitions()).map(|(it, (_, transition))| {
         let guard = transition.expression.guard.as_ref()?.span();
         literal(it.te_place, &it.te).then_some(guard)
     });
     let places = SourceSpans {
-        nodes: iac.nodes.iter().map(|node| node.place.0).collect(),
+        nodes: iac.nodes.iter().map(|node| node.position.0).collect(),
         guards: guards.collect(),
-        transitions: transitions().map(|transition| transition.place.0).collect(),
+        transitions: transitions().map(|transition| transition.position.0).collect(),
     };
     (CheckedModel::new(chart, places, Semantics::yase()), found)
 }
@@ -99,7 +99,7 @@ pub(crate) fn of_scxml(document: &yase_scxml::Document) -> CheckedModel {
 /// # Errors
 /// The errors that prevent reading the model.
 pub(crate) fn chart_and_places(source: &Arc<Source>) -> Result<(Statechart, Vec<Span>), Vec<Diagnostic>> {
-    let CheckedModel { chart, places, .. } = subject_of(source)?;
+    let CheckedModel { chart, spans: places, .. } = subject_of(source)?;
     Ok((chart, places.transitions))
 }
 
@@ -139,8 +139,8 @@ impl CheckedModel {
             }
         }
         let guarded_first = semantics.order == yase::SegmentOrder::GuardedFirst;
-        for ways in &mut outgoing {
-            ways.sort_by_key(|&id: &TransitionId| {
+        for transitions in &mut outgoing {
+            transitions.sort_by_key(|&id: &TransitionId| {
                 let transition = chart.transition(id);
                 let is_unguarded = guarded_first && transition.expression.guard.is_none();
                 (Reverse(transition.priority), is_unguarded)
@@ -148,7 +148,7 @@ impl CheckedModel {
         }
         let extents = extents(&chart);
         let names = Arc::new(DiagnosticNames::new(&chart));
-        CheckedModel { chart, places, semantics, liveness: None, outgoing, incoming, extents, names }
+        CheckedModel { chart, spans: places, semantics, liveness: None, outgoing, incoming, extents, names }
     }
 
     pub(crate) fn kind(&self, node: NodeId) -> NodeKind {
@@ -217,12 +217,12 @@ impl CheckedModel {
 
     /// A warning about a node.
     pub(crate) fn warn(&self, code: &'static str, node: NodeId, message: String) -> Diagnostic {
-        Diagnostic::warning(code, self.places.node(node), message)
+        Diagnostic::warning(code, self.spans.node(node), message)
     }
 
     /// A warning about a transition.
     pub(crate) fn warn_of(&self, code: &'static str, id: TransitionId, message: String) -> Diagnostic {
-        Diagnostic::warning(code, self.places.transition(id), message)
+        Diagnostic::warning(code, self.spans.transition(id), message)
     }
 }
 

@@ -158,8 +158,8 @@ fn robots(
     let sent: Vec<Vec<SentMessage>> = sent.collect();
     let robots = models.iter().zip(charts).enumerate().map(|(number, ((name, source), chart))| {
         let beside = (0..models.len()).filter(|&other| other != number && hosts[other] == hosts[number]);
-        let beside = beside.flat_map(|other| sent[other].iter().map(|it| it.word.clone())).collect();
-        let deployment = RobotDeployment { host: hosts[number], hosts, beside };
+        let beside = beside.flat_map(|other| sent[other].iter().map(|it| it.name.clone())).collect();
+        let deployment = RobotDeployment { host: hosts[number], hosts, sent_by_others: beside };
         ComposedRobot::new(name, source, chart, deployment, world)
     });
     Ok(robots.collect())
@@ -193,16 +193,16 @@ fn behaviours(
 
 fn route_names(robots: &[ComposedRobot], passage: &MessageRoute) -> (String, String, String) {
     let from = &robots[passage.from];
-    let name = from.sent[passage.sent_message].word.name().to_owned();
+    let name = from.sent[passage.sent_message].name.name().to_owned();
     (from.name.clone(), robots[passage.to].name.clone(), name)
 }
 
 /// An error if the messages of a robot cannot be distinguished.
 fn unexplorable(robot: &ComposedRobot) -> Option<Diagnostic> {
     robot.ambiguous().or_else(|| {
-        let way = composed_robot::wildcard_trigger(&robot.subject.chart)?;
+        let transition = composed_robot::wildcard_trigger(&robot.subject.chart)?;
         let message = format!("`{}` matches every event: it is unknown which messages those are", robot.name);
-        let found = Diagnostic::error("E0935", robot.subject.places.transition(way), message);
+        let found = Diagnostic::error("E0935", robot.subject.spans.transition(transition), message);
         Some(found.with_hint("name the events").in_source(&robot.source))
     })
 }
@@ -222,12 +222,12 @@ fn unsent_messages<'a>(
 }
 
 fn no_sender(robot: &ComposedRobot, received: &ReceivedMessage) -> Diagnostic {
-    let (host, name) = (&received.called.host, received.called.word.name());
+    let (host, name) = (&received.called.host, received.called.name.name());
     let message = format!(
         "the chart of `{host}` does not send `{name}`, which `{}` waits for: it is assumed to arrive at any time",
         robot.name
     );
-    let found = Diagnostic::warning("E0934", robot.subject.places.transition(received.way), message);
+    let found = Diagnostic::warning("E0934", robot.subject.spans.transition(received.transition), message);
     found.with_hint("`--linked` takes the topics of activities from the program").in_source(&robot.source)
 }
 
@@ -261,7 +261,7 @@ fn confirmed_deadlock(product: &GlobalProduct<'_>, found: &Deadlock, state: usiz
             let called = &robot.received[wait.received_message].called;
             let (name, path) = (&robot.name, robot.subject.path(wait.node));
             let of = if called.host.is_empty() { String::new() } else { format!(" of `{}`", called.host) };
-            format!("`{name}` waits in `{path}` for `{}`{of}", called.word.name())
+            format!("`{name}` waits in `{path}` for `{}`{of}", called.name.name())
         })
         .collect();
     let message = match waits.as_slice() {
@@ -270,9 +270,9 @@ fn confirmed_deadlock(product: &GlobalProduct<'_>, found: &Deadlock, state: usiz
     };
     let (robot, wait) = found.waits.first().copied().unwrap_or_default();
     let robot = &product.robots[robot];
-    let place =
-        robot.waits.get(wait).map_or(Span::default(), |wait| robot.subject.places.transition(wait.way));
-    let diagnostic = Diagnostic::error("E0930", place, message)
+    let span =
+        robot.waits.get(wait).map_or(Span::default(), |wait| robot.subject.spans.transition(wait.transition));
+    let diagnostic = Diagnostic::error("E0930", span, message)
         .with_hint("let one of them continue alone: send its message first, or limit the wait by a timer")
         .in_source(&robot.source);
     Finding { diagnostic, trace: Some(product.trace_text(&product.path_to(state))) }
@@ -290,9 +290,10 @@ fn dropped(product: &GlobalProduct<'_>, passage: usize, edge: usize) -> Finding 
     let (from, to, name) = route_names(product.robots, &product.passages[passage]);
     let robot = &product.robots[product.passages[passage].to];
     let received = product.passages[passage].waited.and_then(|message| robot.received.get(message));
-    let place = received.map_or(Span::default(), |received| robot.subject.places.transition(received.way));
+    let span =
+        received.map_or(Span::default(), |received| robot.subject.spans.transition(received.transition));
     let message = format!("`{name}` of `{from}` may arrive at `{to}` where no state reads it, and is lost");
-    let found = Diagnostic::warning("E0931", place, message);
+    let found = Diagnostic::warning("E0931", span, message);
     let hint = "defer it in the states before, or wait for it there";
     Finding {
         diagnostic: found.with_hint(hint).in_source(&robot.source),
@@ -303,16 +304,16 @@ fn dropped(product: &GlobalProduct<'_>, passage: usize, edge: usize) -> Finding 
 fn channel_overflow(product: &GlobalProduct<'_>, passage: usize, edge: usize, channels: Channels) -> Finding {
     let (from, to, name) = route_names(product.robots, &product.passages[passage]);
     let robot = &product.robots[product.passages[passage].from];
-    let place = match robot.sent[product.passages[passage].sent_message].places.first() {
-        Some(&MessageUse::Way(way)) => robot.subject.places.transition(way),
-        Some(&MessageUse::Node(node)) => robot.subject.places.node(node),
+    let span = match robot.sent[product.passages[passage].sent_message].uses.first() {
+        Some(&MessageUse::Way(transition)) => robot.subject.spans.transition(transition),
+        Some(&MessageUse::Node(node)) => robot.subject.spans.node(node),
         None => Span::default(),
     };
     let most = channels.capacity;
     let message = format!(
         "`{from}` may send more than {most} messages before `{to}` receives the first: `{name}` is lost then"
     );
-    let found = Diagnostic::warning("E0932", place, message);
+    let found = Diagnostic::warning("E0932", span, message);
     let hint = "wait for an answer before sending the next one, or enlarge the channel (`--channel`)";
     Finding {
         diagnostic: found.with_hint(hint).in_source(&robot.source),

@@ -223,18 +223,18 @@ impl ConformanceComparison<'_> {
                 let difference = self.difference(DifferenceKind::EndsEarly, &came, &at, None);
                 return (InclusionResult::Differs(difference), came);
             }
-            for way in &graph.ways[at.0] {
-                let rests = match way.observable {
+            for edge in &graph.edges[at.0] {
+                let rests = match edge.observable {
                     Observable::Nothing => at.1.clone(),
                     Observable::Letter(letter) => self.language.derivative_of_any(&at.1, letter),
                     Observable::Other => ResidualSet::new(),
                 };
-                if let (true, Some(node)) = (rests.is_empty(), self.found.edges()[way.edge].returned) {
+                if let (true, Some(node)) = (rests.is_empty(), self.found.edges()[edge.edge].returned) {
                     let kind = DifferenceKind::NotAllowed(node);
-                    let difference = self.difference(kind, &came, &at, Some(way.edge));
+                    let difference = self.difference(kind, &came, &at, Some(edge.edge));
                     return (InclusionResult::Differs(difference), came);
                 }
-                came.visit((way.to, rests), Some((at.clone(), way.edge)));
+                came.visit((edge.to, rests), Some((at.clone(), edge.edge)));
             }
         }
         (InclusionResult::Same, came)
@@ -314,17 +314,17 @@ impl ConformanceComparison<'_> {
 }
 
 fn reached(graph: &Graph, states: &BTreeSet<usize>, letter: Symbol) -> BTreeSet<usize> {
-    let ways = states.iter().flat_map(|&state| &graph.ways[state]);
-    ways.filter(|way| way.observable == Observable::Letter(letter)).map(|way| way.to).collect()
+    let ways = states.iter().flat_map(|&state| &graph.edges[state]);
+    ways.filter(|edge| edge.observable == Observable::Letter(letter)).map(|way| way.to).collect()
 }
 
 /// All states that are reached without the return of an activity.
 fn internal_closure(graph: &Graph, mut states: BTreeSet<usize>) -> BTreeSet<usize> {
     let mut open: Vec<usize> = states.iter().copied().collect();
     while let Some(state) = open.pop() {
-        for way in graph.ways[state].iter().filter(|way| way.observable == Observable::Nothing) {
-            if states.insert(way.to) {
-                open.push(way.to);
+        for edge in graph.edges[state].iter().filter(|way| way.observable == Observable::Nothing) {
+            if states.insert(edge.to) {
+                open.push(edge.to);
             }
         }
     }
@@ -393,18 +393,18 @@ mod tests {
         let mut guarded = Vec::new();
         let nodes: Vec<NodeId> = chart.nodes().map(|(id, _)| id).collect();
         for node in nodes {
-            let ways: Vec<TransitionId> =
+            let transitions: Vec<TransitionId> =
                 chart.transitions().filter(|(_, it)| it.source == node).map(|(id, _)| id).collect();
-            for &way in &ways[..ways.len().saturating_sub(1)] {
-                set_guard(&mut chart, way, &format!("script(\"{}\")", way.0));
-                guarded.push(way);
+            for &transition in &transitions[..transitions.len().saturating_sub(1)] {
+                set_guard(&mut chart, transition, &format!("script(\"{}\")", transition.0));
+                guarded.push(transition);
             }
         }
         (chart, liveness, guarded)
     }
 
-    fn set_guard(chart: &mut Statechart, way: TransitionId, guard: &str) {
-        chart.transition_mut(way).expression = parse_transition(&format!("[{guard}]")).0;
+    fn set_guard(chart: &mut Statechart, transition: TransitionId, guard: &str) {
+        chart.transition_mut(transition).expression = parse_transition(&format!("[{guard}]")).0;
     }
 
     /// The differences, if the chart is small enough for exploration.
@@ -453,7 +453,9 @@ mod tests {
                 .filter(|(id, it)| chart.node(it.source).kind == NodeKind::Basic && !guarded.contains(id))
                 .map(|(id, _)| id)
                 .collect();
-            done.into_iter().for_each(|way| set_guard(&mut chart, way, &format!("script(\"{}\")", way.0)));
+            done.into_iter().for_each(|transition| {
+                set_guard(&mut chart, transition, &format!("script(\"{}\")", transition.0))
+            });
             if let Some(&way) = guarded.get(round % (guarded.len() + 1)) {
                 set_guard(&mut chart, way, "false");
             }
@@ -484,7 +486,7 @@ mod tests {
             // ones
             let is_some = |it: &Option<(usize, DifferenceKind)>| it.is_some();
             assert_eq!(is_some(&by_states[0]), is_some(&by_classes[0]), "{text}");
-            smaller += usize::from(small.ways.len() < full.ways.len());
+            smaller += usize::from(small.edges.len() < full.edges.len());
             different += usize::from(by_states.iter().any(is_some));
         }
         assert!(smaller >= 20 && different >= 20, "{smaller} were smaller, {different} differ");
@@ -510,8 +512,8 @@ mod tests {
     fn each_difference_is_found() {
         assert_eq!(kinds("r = a . b", |_| {}), []);
         let closed = |chart: &mut Statechart| {
-            let way = between(chart, "b", NodeKind::End);
-            set_guard(chart, way, "false");
+            let transition = between(chart, "b", NodeKind::End);
+            set_guard(chart, transition, "false");
         };
         assert_eq!(kinds("r = a . b", closed), [DifferenceKind::NeverEnds]);
         let skipped = |chart: &mut Statechart| {

@@ -132,12 +132,12 @@ pub struct Mutant {
 /// # Errors
 /// The errors that prevent reading the model, or an error if its kind has no chart.
 pub fn mutants(source: &Arc<Source>) -> Result<Vec<Mutant>, Vec<Diagnostic>> {
-    let (chart, places) = crate::checked_model::chart_and_places(source)?;
+    let (chart, spans) = crate::checked_model::chart_and_places(source)?;
     let mut making = MutantCollector {
         source,
         chart: &chart,
         names: DiagnosticNames::new(&chart),
-        places: &places,
+        spans: &spans,
         known: BTreeSet::new(),
         made: Vec::new(),
     };
@@ -159,7 +159,7 @@ struct MutantCollector<'a> {
     source: &'a Arc<Source>,
     chart: &'a Statechart,
     names: DiagnosticNames,
-    places: &'a [Span],
+    spans: &'a [Span],
     /// The changes so far, to skip duplicates.
     known: BTreeSet<String>,
     made: Vec<(String, Mutant)>,
@@ -204,7 +204,7 @@ impl MutantCollector<'_> {
         }
         let it = chart.transition(id);
         let what = format!("{} {} {} {}", id.0, it.target.0, it.priority, it.expression);
-        let span = self.places.get(id.0 as usize).copied().unwrap_or_default();
+        let span = self.spans.get(id.0 as usize).copied().unwrap_or_default();
         self.add(&what, (self.arrow(id), self.names.transition_path(id)), span, mutation, chart);
     }
 

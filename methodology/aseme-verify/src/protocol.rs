@@ -53,8 +53,8 @@ impl Conformance {
         !self.findings.iter().any(Diagnostic::is_error)
     }
 
-    fn report(&mut self, code: &'static str, place: Span, message: String, hint: &str) {
-        self.findings.push(Diagnostic::error(code, place, message).with_hint(hint));
+    fn report(&mut self, code: &'static str, span: Span, message: String, hint: &str) {
+        self.findings.push(Diagnostic::error(code, span, message).with_hint(hint));
     }
 }
 
@@ -78,7 +78,12 @@ pub fn chart_conforms(eac: &Iac, aip: &Aip) -> Conformance {
     }
     for &part in parts.iter().filter(|&&part| part_named(aip, protocol, &eac.nodes[part].name).is_none()) {
         let message = format!("`{}` takes no part in the protocol `{}`", eac.nodes[part].name, protocol.name);
-        found.report("E0861", eac.nodes[part].place.0, message, "add it to the participants, or remove it");
+        found.report(
+            "E0861",
+            eac.nodes[part].position.0,
+            message,
+            "add it to the participants, or remove it",
+        );
     }
     if found.is_given() {
         let formulas = protocol_formulas(aip, protocol).0;
@@ -95,9 +100,9 @@ pub fn player_conforms(player: &Iac, eac: &Iac, aip: &Aip) -> Conformance {
     let mut takes_part = false;
     for part in participants(eac) {
         let name = eac.nodes[part].name.as_str();
-        let places = (0..player.nodes.len())
+        let span = (0..player.nodes.len())
             .filter(|&node| player.nodes[node].kind == "OR" && player.nodes[node].name == name);
-        for place in places {
+        for place in span {
             takes_part = true;
             let before = found.findings.len();
             part::contained(player, place, eac, part, &mut found);
@@ -106,7 +111,7 @@ pub fn player_conforms(player: &Iac, eac: &Iac, aip: &Aip) -> Conformance {
             if let (true, Some(formulas)) = (found.findings.len() == before, formulas) {
                 let alone = part::alone(player, place, eac, part);
                 let liveness = liveness::parse(&formulas).0;
-                traces(&alone, &liveness, name, player.nodes[place].place.0, &mut found);
+                traces(&alone, &liveness, name, player.nodes[place].position.0, &mut found);
                 trace_inclusion::in_whole(player, place, (eac, part), &liveness, &mut found);
             }
         }
@@ -130,17 +135,17 @@ pub fn role_chart(role: &Srm) -> Result<Iac, Vec<Diagnostic>> {
     }
     let mut chart = Iac::from_statechart(&model.chart, ChartKind::Intra);
     for (node, id) in chart.nodes.iter_mut().zip(depth_first(&model.chart)) {
-        node.place = TextPosition(model.places.node(id));
+        node.position = TextPosition(model.spans.node(id));
     }
     for (transition, (id, _)) in chart.transitions.iter_mut().zip(model.chart.transitions()) {
-        transition.place = TextPosition(model.places.transition(id));
+        transition.position = TextPosition(model.spans.transition(id));
     }
     Ok(chart)
 }
 
 /// The span of a whole chart.
 fn root(chart: &Iac) -> Span {
-    chart.nodes.first().map_or(Span::default(), |node| node.place.0)
+    chart.nodes.first().map_or(Span::default(), |node| node.position.0)
 }
 
 /// The names of a chart's nodes in findings.
@@ -183,7 +188,7 @@ fn chart_part(
     let name = &part.name;
     if let Err((wanted, there)) = same_shape(expected, wanted, eac, node, ShapeMatch::Same) {
         let message = format!("`{name}` differs from the protocol: {there} instead of {wanted}");
-        return found.report("E0862", eac.nodes[node].place.0, message, "use the formula of the protocol");
+        return found.report("E0862", eac.nodes[node].position.0, message, "use the formula of the protocol");
     }
     let borders = BoundaryTransitions::of(eac, node);
     for rule in conditions(&part.engaging_rules).into_iter().flatten() {
@@ -203,7 +208,7 @@ fn chart_part(
 /// enters it again.
 struct BoundaryTransitions<'a> {
     /// The span of the composite.
-    place: Span,
+    span: Span,
     into: Vec<&'a IacTransition>,
     out: Vec<&'a IacTransition>,
 }
@@ -216,16 +221,16 @@ impl BoundaryTransitions<'_> {
         let crossing = |it: &&IacTransition| inside(it.source) != inside(it.target) || is_repetition(it);
         let (into, out) =
             chart.transitions.iter().filter(crossing).partition(|it: &&IacTransition| inside(it.target));
-        BoundaryTransitions { place: chart.nodes[node].place.0, into, out }
+        BoundaryTransitions { span: chart.nodes[node].position.0, into, out }
     }
 
     fn engaged_by(&self, chart: &Iac, name: &str, rule: &Expression, found: &mut Conformance) {
         let logic = GuardSolver::new(&chart.constants);
-        for way in &self.into {
-            let is_ruled = guard(way).is_some_and(|guard| logic.implies(&guard, rule));
+        for transition in &self.into {
+            let is_ruled = guard(transition).is_some_and(|guard| logic.implies(&guard, rule));
             if !is_ruled {
                 let message = format!("`{name}` may be entered while `{rule}` does not hold");
-                found.report("E0863", way.place.0, message, "guard its entry by the engaging rule");
+                found.report("E0863", transition.position.0, message, "guard its entry by the engaging rule");
             }
         }
     }
@@ -235,19 +240,24 @@ impl BoundaryTransitions<'_> {
         let leads_out = |guard: Expression| logic.implies(outcome, &guard);
         if !self.out.iter().filter_map(|way| guard(way)).any(leads_out) {
             let message = format!("`{name}` has no exit for the outcome `{outcome}`");
-            let place = self.out.first().map_or(self.place, |way| way.place.0);
-            found.report("E0864", place, message, "add a transition out of it with the outcome as guard");
+            let span = self.out.first().map_or(self.span, |way| way.position.0);
+            found.report("E0864", span, message, "add a transition out of it with the outcome as guard");
         }
     }
 
     fn no_other_exit(&self, chart: &Iac, name: &str, outcomes: &[Expression], found: &mut Conformance) {
         let logic = GuardSolver::new(&chart.constants);
-        for way in &self.out {
-            let Some(guard) = guard(way) else { continue };
+        for transition in &self.out {
+            let Some(guard) = guard(transition) else { continue };
             if !outcomes.iter().any(|outcome| logic.implies(&guard, outcome)) {
                 let message =
                     format!("`{name}` is left when `{guard}`, which is not an outcome of the protocol");
-                found.report("E0865", way.place.0, message, "make it an outcome, or remove the exit");
+                found.report(
+                    "E0865",
+                    transition.position.0,
+                    message,
+                    "make it an outcome, or remove the exit",
+                );
             }
         }
     }
@@ -260,7 +270,7 @@ fn guard(transition: &IacTransition) -> Option<Expression> {
 
 /// Explores a chart and compares its traces with formulas. A trace that ends early by an exit is
 /// allowed.
-fn traces(chart: &Iac, liveness: &Liveness, name: &str, place: Span, found: &mut Conformance) {
+fn traces(chart: &Iac, liveness: &Liveness, name: &str, span: Span, found: &mut Conformance) {
     let (subject, made) = checked_model::of_chart(chart);
     let abstraction = match Abstraction::new(&subject) {
         Ok(abstraction) if !made.iter().any(Diagnostic::is_error) => abstraction,
@@ -274,7 +284,7 @@ fn traces(chart: &Iac, liveness: &Liveness, name: &str, place: Span, found: &mut
     let (differences, is_whole) = differences_of_what_is_left_early(&subject.chart, &explored, liveness);
     if !explored.is_finished() || !is_whole {
         let message = format!("`{name}` is too large: not all of its traces are known");
-        return found.report("E0869", place, message, "make parts of it protocols of their own");
+        return found.report("E0869", span, message, "make parts of it protocols of their own");
     }
     for difference in differences {
         let before = match difference.before.as_slice() {
@@ -282,8 +292,8 @@ fn traces(chart: &Iac, liveness: &Liveness, name: &str, place: Span, found: &mut
             names => format!("after `{}`", names.join(" ")),
         };
         let place = match difference.kind {
-            DifferenceKind::NotAllowed(node) => subject.places.node(node),
-            _ => place,
+            DifferenceKind::NotAllowed(node) => subject.spans.node(node),
+            _ => span,
         };
         let (code, what) = match difference.kind {
             DifferenceKind::NotAllowed(node) => (

@@ -149,7 +149,7 @@ impl<'a> Lookup<'a> {
 struct RefinementTarget<'a, Id> {
     text: &'a str,
     span: Span,
-    thing: &'static str,
+    kind: &'static str,
     has_wildcard: bool,
     named: Vec<Id>,
     /// Suggestions if it matches nothing.
@@ -178,7 +178,7 @@ fn transitions_of<'a>(lookup: &Lookup<'_>, entry: &'a TransitionEntry) -> Refine
         false => Vec::new(),
     };
     let has_wildcard = entry.has_wildcard();
-    RefinementTarget { text: &entry.text, span: entry.span, thing: "transition", has_wildcard, named, near }
+    RefinementTarget { text: &entry.text, span: entry.span, kind: "transition", has_wildcard, named, near }
 }
 
 fn states_of<'a>(lookup: &Lookup<'_>, entry: &'a StateEntry) -> RefinementTarget<'a, NodeId> {
@@ -194,7 +194,7 @@ fn states_of<'a>(lookup: &Lookup<'_>, entry: &'a StateEntry) -> RefinementTarget
     RefinementTarget {
         text: &entry.text,
         span: entry.span,
-        thing: "state",
+        kind: "state",
         has_wildcard: entry.path.has_wildcard(),
         named,
         near,
@@ -255,7 +255,7 @@ fn unmatched_entry<Id>(wish: &RefinementTarget<'_, Id>, text_of: impl Fn(&Id) ->
         0 => ("E0250", "no", wish.near.clone()),
         _ => ("E0251", "more than one", wish.named.iter().take(MAX_CANDIDATES).map(text_of).collect()),
     };
-    let message = format!("`{}` names {number} {} of the chart", wish.text, wish.thing);
+    let message = format!("`{}` names {number} {} of the chart", wish.text, wish.kind);
     let diagnostic = Diagnostic::error(code, wish.span, message);
     let diagnostic = match hint(&candidates) {
         Some(hint) => diagnostic.with_hint(hint),

@@ -208,7 +208,7 @@ pub enum LayoutTarget {
         /// The node it leads to.
         target: Path,
         /// 0 for the transition of the formulas; from 1 on for those added in parallel, in order.
-        beside: usize,
+        parallel: usize,
     },
 }
 

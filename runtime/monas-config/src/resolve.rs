@@ -70,13 +70,13 @@ pub struct ResolvedEntry {
     /// The layer it comes from.
     pub layer: Layer,
     /// Its location; none for a default.
-    pub place: Option<(Arc<Source>, Span)>,
+    pub location: Option<(Arc<Source>, Span)>,
 }
 
 impl ResolvedEntry {
     /// Its origin, in prose.
     pub fn origin(&self) -> String {
-        match (&self.place, self.layer) {
+        match (&self.location, self.layer) {
             (Some((source, _)), Layer::CommandLine) => format!("{} {}", source.name, source.text),
             (Some((source, span)), layer) => {
                 let (line, column) = source.position(span.start);
@@ -135,7 +135,7 @@ fn list_element(
     if is_plain || !has_values {
         let value = is_plain.then(|| element.text.clone());
         let place = Some((element.source.clone(), element.text_span));
-        entries.push(ResolvedEntry { path: path.to_owned(), value, layer: element.layer, place });
+        entries.push(ResolvedEntry { path: path.to_owned(), value, layer: element.layer, location: place });
     }
     let is_identity =
         |known: &&AttributeRule| matches!(rule.identity, Identity::Attribute(key) if key == known.key);
@@ -147,7 +147,7 @@ fn list_element(
                 path: format!("{path}.{}", known.key),
                 value: Some(default.clone()),
                 layer: Layer::Default,
-                place: None,
+                location: None,
             }),
             (None, None) => {}
         }
@@ -180,7 +180,7 @@ fn list_defaults(
                 path: format!("{path}.{}", child.name),
                 value: Some(default.clone()),
                 layer: Layer::Default,
-                place: None,
+                location: None,
             });
         }
     }
@@ -191,6 +191,6 @@ fn entry(path: &str, key: &str, given: &Attribute) -> ResolvedEntry {
         path: format!("{path}.{key}"),
         value: Some(given.value.clone()),
         layer: given.layer,
-        place: Some((given.source.clone(), given.value_span)),
+        location: Some((given.source.clone(), given.value_span)),
     }
 }

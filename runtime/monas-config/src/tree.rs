@@ -43,7 +43,7 @@ pub struct XmlNode<T, A, K = String> {
     /// Its attributes.
     pub attributes: BTreeMap<K, A>,
     /// Its path from the root: its index among all elements, at each level.
-    place: Vec<usize>,
+    path: Vec<usize>,
 }
 
 impl Xml {
@@ -88,14 +88,14 @@ impl Xml {
         node: &XmlNode<T2, A2, K2>,
     ) -> Result<Vec<XmlNode<T, A, K>>, ValueError> {
         let mut elements = &self.elements[..];
-        for index in &node.place {
+        for index in &node.path {
             match elements.get(*index) {
                 Some(element) => elements = element.children(),
                 // It was found in another file.
                 None => return Ok(Vec::new()),
             }
         }
-        found(elements, name, &node.place)
+        found(elements, name, &node.path)
     }
 }
 
@@ -124,5 +124,5 @@ fn node<T: FromStr, A: FromStr, K: FromStr + Ord>(
         Ok((key, attribute_value(given)?))
     });
     let attributes = attributes.collect::<Result<_, ValueError>>()?;
-    Ok(XmlNode { name: element.name().to_owned(), value, attributes, place })
+    Ok(XmlNode { name: element.name().to_owned(), value, attributes, path: place })
 }

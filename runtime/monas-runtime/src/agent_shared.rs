@@ -366,7 +366,7 @@ impl AgentShared {
         let shares = update.shares(list.is_some(), charts.len());
         let given: Vec<_> = shares
             .into_iter()
-            .filter_map(|ThreadUpdate { place, update, is_own }| {
+            .filter_map(|ThreadUpdate { chart: place, update, is_own }| {
                 let part = place.map_or(list.as_ref(), |place| charts.get(place))?;
                 let (number, answered) = part.enqueue(update);
                 Some((part, number, answered, is_own))

@@ -40,7 +40,7 @@ pub(crate) struct AgentUpdate {
 /// The share of an update for one thread.
 pub(crate) struct ThreadUpdate {
     /// The chart's index; `None` for the list.
-    pub(crate) place: Option<usize>,
+    pub(crate) chart: Option<usize>,
     pub(crate) update: AgentUpdate,
     /// Whether it changes the list or chart of the thread, beside commands for the whole agent.
     pub(crate) is_own: bool,
@@ -164,7 +164,7 @@ impl AgentUpdate {
         if has_list {
             let is_own = !edits.is_empty();
             shares.push(ThreadUpdate {
-                place: None,
+                chart: None,
                 update: AgentUpdate { edits, ..chart_update(None) },
                 is_own,
             });
@@ -184,7 +184,7 @@ impl AgentUpdate {
                 instances: fresh,
                 ..chart_update(Some(place))
             };
-            shares.push(ThreadUpdate { place: Some(place), update: orders, is_own });
+            shares.push(ThreadUpdate { chart: Some(place), update: orders, is_own });
         }
         shares.retain(|ThreadUpdate { update: orders, is_own, .. }| {
             *is_own || !orders.commands.is_empty() || !orders.events.is_empty()

@@ -198,8 +198,13 @@ impl RealTimeRun {
         let clock = self.clock;
         let safe_state = Arc::new(AtomicBool::new(false));
         let (place, line) = (hosts.len(), self.line.clone());
-        let site =
-            HostSite { hub: hub.clone(), place, clock, safe_state: safe_state.clone(), supervisor: line };
+        let site = HostSite {
+            hub: hub.clone(),
+            host: place,
+            clock,
+            safe_state: safe_state.clone(),
+            supervisor: line,
+        };
         hosts.push(RealTimeHost::new(site, factory.clone(), ground, profiles, configuration)?);
         let agents = hosts[place].connect(members)?;
         let links = links.into_iter().map(|link| RunningLink::start(&hub, link, move || clock.now()));

@@ -69,7 +69,7 @@ pub(crate) type WakeCallback = Arc<dyn Fn(TopicSlot, HostId) + Send + Sync>;
 /// The threads of the agents.
 struct AgentThreads {
     hub: Hub,
-    place: usize,
+    host: usize,
     clock: RunClock,
     /// Set when the body must enter its safe state.
     safe_state: Arc<AtomicBool>,
@@ -103,7 +103,7 @@ pub(crate) struct ConnectedAgent {
 pub(crate) struct HostSite {
     pub(crate) hub: Hub,
     /// Index of the host.
-    pub(crate) place: usize,
+    pub(crate) host: usize,
     pub(crate) clock: RunClock,
     pub(crate) safe_state: Arc<AtomicBool>,
     pub(crate) supervisor: Sender<SupervisorRequest>,
@@ -118,10 +118,10 @@ impl RealTimeHost {
         profiles: Vec<AgentProfile>,
         configuration: Option<Arc<yase::Source>>,
     ) -> Result<RealTimeHost, Error> {
-        let HostSite { hub, place, clock, safe_state: rests, supervisor: line } = site;
+        let HostSite { hub, host: place, clock, safe_state: rests, supervisor: line } = site;
         let team = AgentThreads {
             hub,
-            place,
+            host: place,
             clock,
             safe_state: rests,
             linked: Vec::new(),
@@ -283,7 +283,7 @@ impl AgentThreads {
             worker.shared.for_each_thread(|part| mailboxes.push(part.mailbox.clone()));
         }
         let (linked, change) = (self.linked.clone(), self.hub.topic(CHANGE.path()));
-        let asked = request_notifier(&self.supervisor, self.place);
+        let asked = request_notifier(&self.supervisor, self.host);
         Arc::new(move |topic, host| {
             mailboxes.iter().for_each(|mailbox| mailbox.message(topic, host));
             linked.iter().for_each(|wake| wake(topic, host));
@@ -631,7 +631,7 @@ mod tests {
         let PreparedHost { hub, agents, context, profiles, configuration, .. } = stations.remove(0);
         let (supervisor, _events) = channel();
         let safe_state = Arc::new(AtomicBool::new(false));
-        let site = HostSite { hub: hub.clone(), place: 0, clock: RunClock::start(), safe_state, supervisor };
+        let site = HostSite { hub: hub.clone(), host: 0, clock: RunClock::start(), safe_state, supervisor };
         let mut host = RealTimeHost::new(site, factory, context, profiles, configuration).unwrap();
         let publish = || hub.publisher(REQUEST, "test").unwrap().publish(Ball::default(), Timestamp::ZERO);
         if matches!(published, Published::BeforeConnection) {

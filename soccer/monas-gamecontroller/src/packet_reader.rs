@@ -4,20 +4,20 @@ use crate::{Error, ErrorKind};
 
 /// A position in a packet.
 pub(crate) struct PacketReader<'a> {
-    what: &'static str,
+    packet: &'static str,
     rest: &'a [u8],
 }
 
 impl<'a> PacketReader<'a> {
     /// Begins to read a packet; `what` names it in errors.
     pub(crate) fn new(what: &'static str, packet: &'a [u8]) -> PacketReader<'a> {
-        PacketReader { what, rest: packet }
+        PacketReader { packet: what, rest: packet }
     }
 
     /// The next bytes.
     pub(crate) fn bytes<const N: usize>(&mut self) -> Result<[u8; N], Error> {
         let Some((bytes, rest)) = self.rest.split_first_chunk() else {
-            let message = format!("{} ends before its last field", self.what);
+            let message = format!("{} ends before its last field", self.packet);
             return Err(Error::new(ErrorKind::Length, message));
         };
         self.rest = rest;
@@ -32,7 +32,8 @@ impl<'a> PacketReader<'a> {
         }
         let letters = |header: &[u8]| header.escape_ascii().to_string();
         let known = known.iter().map(|header| format!("`{}`", letters(header))).collect::<Vec<_>>();
-        let message = format!("{} begins with {}, not `{}`", self.what, known.join(" or "), letters(&header));
+        let message =
+            format!("{} begins with {}, not `{}`", self.packet, known.join(" or "), letters(&header));
         Err(Error::new(ErrorKind::Header, message))
     }
 

@@ -146,7 +146,7 @@ impl ModelLanguage for AsemeLanguage {
         let findings =
             report.findings.iter().filter(|it| it.diagnostic.severity > yase::Severity::Information);
         let findings = findings.map(|it| finding(&it.diagnostic, it.trace.as_deref(), &positions));
-        json!({"done": true, "what": report.what, "stopped": report.is_stopped,
+        json!({"done": true, "what": report.kind, "stopped": report.is_stopped,
             "findings": findings.collect::<Vec<_>>()})
     }
 

@@ -95,7 +95,7 @@ impl TapeRun {
                 }
                 _ => return None,
             };
-            Some(Expression { kind, place: part.place })
+            Some(Expression { kind, position: part.position })
         });
         (!is_unknown).then_some(plain)
     }
@@ -107,7 +107,7 @@ fn literal(value: &Value) -> Option<ExpressionKind> {
         let kind = ExpressionKind::Decimal(number.abs());
         let place = Default::default();
         match number.is_sign_negative() {
-            true => ExpressionKind::Negative(Box::new(Expression { kind, place })),
+            true => ExpressionKind::Negative(Box::new(Expression { kind, position: place })),
             false => kind,
         }
     };

@@ -84,8 +84,8 @@ fn wide(states: usize) -> Statechart {
 
 fn unguarded(states: usize) -> Statechart {
     let mut chart = wide(states);
-    let ways: Vec<TransitionId> = chart.transitions().map(|(id, _)| id).collect();
-    ways.into_iter().for_each(|way| chart.transition_mut(way).expression.guard = None);
+    let transitions: Vec<TransitionId> = chart.transitions().map(|(id, _)| id).collect();
+    transitions.into_iter().for_each(|transition| chart.transition_mut(transition).expression.guard = None);
     chart
 }
 

@@ -155,14 +155,14 @@ impl RustEmitter<'_> {
 
     fn handle(&mut self) {
         let flat = self.flat;
-        let is_quiet = flat.ways.iter().flatten().all(|way| way.pieces.is_empty());
+        let is_quiet = flat.paths.iter().flatten().all(|path| path.pieces.is_empty());
         let host = if is_quiet { "_host" } else { "host" };
         self.line(1, "#[inline]");
         self.line(1, &format!("pub fn handle(&mut self, event: Event, {host}: &mut impl Host) {{"));
         self.line(2, "match (*self, event) {");
         let mut has_all = !flat.events.is_empty();
-        for (state, ways) in flat.ways.iter().enumerate() {
-            for (event, way) in ways.iter().enumerate() {
+        for (state, paths) in flat.paths.iter().enumerate() {
+            for (event, way) in paths.iter().enumerate() {
                 has_all &= self.arm(state, event, way);
             }
         }
@@ -174,43 +174,43 @@ impl RustEmitter<'_> {
     }
 
     /// The match arm of an event in a state; false if the event has no effect.
-    fn arm(&mut self, state: usize, event: usize, way: &FlatPath) -> bool {
+    fn arm(&mut self, state: usize, event: usize, path: &FlatPath) -> bool {
         let head = format!("(State::{}, Event::{}) =>", self.names.states[state], self.names.events[event]);
-        match (way.pieces.is_empty(), way.to == state) {
+        match (path.pieces.is_empty(), path.to == state) {
             (true, true) => return false,
             (true, false) => {
-                self.line(3, &format!("{head} *self = State::{},", self.names.states[way.to].clone()))
+                self.line(3, &format!("{head} *self = State::{},", self.names.states[path.to].clone()))
             }
             _ => {
                 self.line(3, &format!("{head} {{"));
-                self.way(way, 4, ArmEnd::Becomes { from: state, is_last: true });
+                self.way(path, 4, ArmEnd::Becomes { from: state, is_last: true });
                 self.line(3, "}");
             }
         }
         true
     }
 
-    fn way(&mut self, way: &FlatPath, depth: usize, ending: ArmEnd) {
-        for (index, piece) in way.pieces.iter().enumerate() {
+    fn way(&mut self, path: &FlatPath, depth: usize, ending: ArmEnd) {
+        for (index, piece) in path.pieces.iter().enumerate() {
             match piece {
                 FlatOp::Do(action) => {
                     self.line(depth, &format!("host.{}();", self.names.actions[*action].clone()))
                 }
                 FlatOp::If(condition, other) => {
                     self.line(depth, &format!("if host.{}() {{", self.names.conditions[*condition].clone()));
-                    let nothing_follows = index + 1 == way.pieces.len() && ending.is_done_at(way.to);
+                    let nothing_follows = index + 1 == path.pieces.len() && ending.is_done_at(path.to);
                     let early = if nothing_follows { ending } else { ending.early() };
                     self.way(other, depth + 1, early);
                     self.line(depth, "}");
                 }
             }
         }
-        let to = format!("State::{}", self.names.states[way.to]);
+        let to = format!("State::{}", self.names.states[path.to]);
         match ending {
             ArmEnd::Is { is_last: true } => self.line(depth, &to),
             ArmEnd::Is { is_last: false } => self.line(depth, &format!("return {to};")),
             ArmEnd::Becomes { from, is_last } => {
-                if way.to != from {
+                if path.to != from {
                     self.line(depth, &format!("*self = {to};"));
                 }
                 if !is_last {

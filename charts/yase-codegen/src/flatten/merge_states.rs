@@ -16,9 +16,9 @@ impl FlatMachine {
         loop {
             let done: Vec<(usize, Vec<FlatPath>)> = first
                 .iter()
-                .zip(&self.ways)
-                .map(|(&first_alike, ways)| {
-                    (first_alike, ways.iter().map(|way| with_targets(way, &first)).collect())
+                .zip(&self.paths)
+                .map(|(&first_alike, paths)| {
+                    (first_alike, paths.iter().map(|path| with_targets(path, &first)).collect())
                 })
                 .collect();
             let next = done.iter().map(|one| done.iter().position(|other| other == one).unwrap_or_default());
@@ -33,9 +33,9 @@ impl FlatMachine {
         kept.iter().enumerate().for_each(|(number, &state)| numbers[state] = number);
         let number: Vec<usize> = first.iter().map(|&state| numbers[state]).collect();
         self.start = with_targets(&self.start, &number);
-        self.ways = kept
+        self.paths = kept
             .iter()
-            .map(|&state| self.ways[state].iter().map(|way| with_targets(way, &number)).collect())
+            .map(|&state| self.paths[state].iter().map(|way| with_targets(way, &number)).collect())
             .collect();
         self.states = kept.iter().map(|&state| self.states[state].clone()).collect();
         self
@@ -43,10 +43,10 @@ impl FlatMachine {
 }
 
 /// The same path with renumbered target states.
-fn with_targets(way: &FlatPath, numbers: &[usize]) -> FlatPath {
+fn with_targets(path: &FlatPath, numbers: &[usize]) -> FlatPath {
     let piece = |piece: &FlatOp| match piece {
         FlatOp::Do(action) => FlatOp::Do(*action),
         FlatOp::If(condition, other) => FlatOp::If(*condition, with_targets(other, numbers)),
     };
-    without_idle_questions(FlatPath { pieces: way.pieces.iter().map(piece).collect(), to: numbers[way.to] })
+    without_idle_questions(FlatPath { pieces: path.pieces.iter().map(piece).collect(), to: numbers[path.to] })
 }

@@ -31,7 +31,7 @@ struct RecorderState {
     records: Vec<RecordedCall>,
     /// The conditions read since the last action.
     known: Vec<(usize, bool)>,
-    asked: usize,
+    condition_count: usize,
 }
 
 impl<'w> RecordingHost<'w> {
@@ -58,8 +58,8 @@ impl Host for RecordingHost<'_> {
         if let Some(&(_, value)) = notes.known.iter().find(|(known, _)| *known == condition) {
             return Ok(value);
         }
-        let value = self.planned.get(notes.asked).copied().unwrap_or(false);
-        notes.asked += 1;
+        let value = self.planned.get(notes.condition_count).copied().unwrap_or(false);
+        notes.condition_count += 1;
         notes.known.push((condition, value));
         notes.records.push(RecordedCall::ConditionRead(condition));
         Ok(value)

@@ -45,9 +45,9 @@ pub(crate) fn search(
         FlatEvent::Nothing => StepCause::Messages,
     });
     let moves: Vec<StepCause> = moves.collect();
-    let mut ways = Vec::new();
-    while let Some(machine) = search.machines.get(ways.len()).cloned() {
-        let state = ways.len();
+    let mut paths = Vec::new();
+    while let Some(machine) = search.machines.get(paths.len()).cloned() {
+        let state = paths.len();
         let mut row = Vec::with_capacity(moves.len());
         for event in &moves {
             row.push(match search.states[state].is_over {
@@ -55,11 +55,11 @@ pub(crate) fn search(
                 false => search.way(&machine, event, &[])?,
             });
         }
-        ways.push(row);
+        paths.push(row);
     }
     let SymbolTable { events, conditions, actions, .. } = words;
     let name = chart.statechart().name.clone();
-    Ok(FlatMachine { name, states: search.states, events, conditions, actions, start, ways }
+    Ok(FlatMachine { name, states: search.states, events, conditions, actions, start, paths }
         .merged()
         .without_unused())
 }
@@ -95,10 +95,10 @@ impl FlatSearch<'_> {
                 RecordedCall::ActionExecuted(action) => FlatOp::Do(action),
                 RecordedCall::ConditionRead(condition) => {
                     asked.push(true);
-                    let way = self.way(from, cause, &asked)?;
+                    let path = self.way(from, cause, &asked)?;
                     asked.pop();
                     asked.push(false);
-                    FlatOp::If(condition, way)
+                    FlatOp::If(condition, path)
                 }
             });
         }
@@ -159,17 +159,17 @@ fn records_after(records: &[RecordedCall], asked: usize) -> &[RecordedCall] {
 }
 
 /// Removes conditions without effect.
-pub(crate) fn without_idle_questions(mut way: FlatPath) -> FlatPath {
-    for index in (0..way.pieces.len()).rev() {
-        let is_idle = match &way.pieces[index] {
-            FlatOp::If(_, other) => other.to == way.to && other.pieces == way.pieces[index + 1..],
+pub(crate) fn without_idle_questions(mut path: FlatPath) -> FlatPath {
+    for index in (0..path.pieces.len()).rev() {
+        let is_idle = match &path.pieces[index] {
+            FlatOp::If(_, other) => other.to == path.to && other.pieces == path.pieces[index + 1..],
             FlatOp::Do(_) => false,
         };
         if is_idle {
-            way.pieces.remove(index);
+            path.pieces.remove(index);
         }
     }
-    way
+    path
 }
 
 fn state(machine: &Machine) -> FlatState {

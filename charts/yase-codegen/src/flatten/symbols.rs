@@ -117,7 +117,7 @@ fn has_two_values(condition: &Expression) -> bool {
 fn negated(condition: &Expression) -> ExpressionKind {
     let not = |part: &Expression| Expression {
         kind: ExpressionKind::Not(Box::new(part.clone())),
-        place: part.place,
+        position: part.position,
     };
     match &condition.kind {
         ExpressionKind::Or(parts) => ExpressionKind::And(parts.iter().map(not).collect()),
@@ -229,15 +229,15 @@ mod tests {
         let state = chart.add(Statechart::ROOT, Node::new(NodeKind::Basic, "s"));
         let (expression, wrong) = parse_transition(text);
         assert_eq!(wrong, []);
-        let way = chart.connect(Transition { expression, ..Transition::new(state, state) });
-        (chart, way)
+        let transition = chart.connect(Transition { expression, ..Transition::new(state, state) });
+        (chart, transition)
     }
 
     fn words(guard: &str) -> (String, Vec<String>) {
-        let (chart, way) = chart(&format!("e [{guard}]"));
+        let (chart, transition) = chart(&format!("e [{guard}]"));
         assert_eq!(not_known_beforehand(&chart), []);
         let words = SymbolTable::of(&chart);
-        let guard = words.chart.transition(way).expression.guard.as_ref().map(ToString::to_string);
+        let guard = words.chart.transition(transition).expression.guard.as_ref().map(ToString::to_string);
         (guard.unwrap_or_default(), words.conditions)
     }
 

@@ -8,8 +8,8 @@ impl FlatMachine {
     pub(crate) fn without_unused(mut self) -> FlatMachine {
         let mut conditions = Renumbering::new(self.conditions.len());
         let mut actions = Renumbering::new(self.actions.len());
-        for way in self.every_way() {
-            for_each_piece(way, &mut |piece| match piece {
+        for path in self.every_way() {
+            for_each_piece(path, &mut |piece| match piece {
                 FlatOp::Do(action) => actions.mark_used(*action),
                 FlatOp::If(condition, _) => conditions.mark_used(*condition),
             });
@@ -26,12 +26,12 @@ impl FlatMachine {
     }
 
     fn every_way(&mut self) -> impl Iterator<Item = &mut FlatPath> {
-        std::iter::once(&mut self.start).chain(self.ways.iter_mut().flatten())
+        std::iter::once(&mut self.start).chain(self.paths.iter_mut().flatten())
     }
 }
 
-fn for_each_piece(way: &mut FlatPath, visit: &mut dyn FnMut(&mut FlatOp)) {
-    for piece in &mut way.pieces {
+fn for_each_piece(path: &mut FlatPath, visit: &mut dyn FnMut(&mut FlatOp)) {
+    for piece in &mut path.pieces {
         visit(piece);
         if let FlatOp::If(_, other) = piece {
             for_each_piece(other, visit);

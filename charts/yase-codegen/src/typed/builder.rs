@@ -25,7 +25,7 @@ pub struct TypedChartBuilder {
     chart: Statechart,
     program: NativeProgram,
     /// The actions to which [`TypedChartBuilder::value`] refers.
-    place: Option<ActionLocation>,
+    location: Option<ActionLocation>,
     found: Vec<Diagnostic>,
 }
 
@@ -35,7 +35,7 @@ impl TypedChartBuilder {
         TypedChartBuilder {
             chart: Statechart::new(name),
             program: NativeProgram::default(),
-            place: None,
+            location: None,
             found: Vec::new(),
         }
     }
@@ -114,7 +114,7 @@ impl TypedChartBuilder {
         let (actions, found) = parse_actions(actions);
         self.found.extend(found);
         self.chart.node_mut(id).entry = actions;
-        self.place = Some(ActionLocation::Entry(id));
+        self.location = Some(ActionLocation::Entry(id));
     }
 
     /// Sets the exit actions of a state.
@@ -123,7 +123,7 @@ impl TypedChartBuilder {
         let (actions, found) = parse_actions(actions);
         self.found.extend(found);
         self.chart.node_mut(id).exit = actions;
-        self.place = Some(ActionLocation::Exit(id));
+        self.location = Some(ActionLocation::Exit(id));
     }
 
     /// Adds a transition in the notation of models. The following calls up to the next one refer to
@@ -133,7 +133,7 @@ impl TypedChartBuilder {
         let (expression, found) = parse_transition(expression);
         self.found.extend(found);
         let id = self.chart.connect(Transition { expression, ..Transition::new(source, target) });
-        self.place = Some(ActionLocation::Transition(id));
+        self.location = Some(ActionLocation::Transition(id));
     }
 
     /// Sets the guard function of the transition.
@@ -152,7 +152,7 @@ impl TypedChartBuilder {
         value: ValueFn,
         put: fn(&mut M, Value<'_>) -> Result<(), CallError>,
     ) {
-        let Some(place) = self.place else {
+        let Some(location) = self.location else {
             return self.expect(false, || "a value belongs to no action".to_owned());
         };
         let change = move |message: &mut dyn Any, value: Value<'_>| match message.downcast_mut::<M>() {
@@ -161,7 +161,7 @@ impl TypedChartBuilder {
         };
         let assigned =
             NativeAssignment { target: target.number(), value, change: FieldSetter(Arc::new(change)) };
-        self.program.values.insert((place, index), assigned);
+        self.program.values.insert((location, index), assigned);
     }
 
     /// Sets the priority of the transition; higher ones are tried first.
@@ -201,7 +201,7 @@ impl TypedChartBuilder {
     }
 
     fn transition(&mut self) -> Option<TransitionId> {
-        let id = match self.place {
+        let id = match self.location {
             Some(ActionLocation::Transition(id)) => Some(id),
             _ => None,
         };

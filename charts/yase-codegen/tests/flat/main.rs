@@ -112,7 +112,7 @@ fn simple(chart: &Statechart) -> Statechart {
 fn actions(actions: &[Action], count: &mut usize) -> Vec<Action> {
     let simple = |action: &Action| match action.kind {
         ActionKind::Raise(_) => action.clone(),
-        _ => Action { kind: ActionKind::Script(fresh("do", count)), place: TextPosition::default() },
+        _ => Action { kind: ActionKind::Script(fresh("do", count)), position: TextPosition::default() },
     };
     actions.iter().map(simple).collect()
 }
@@ -206,15 +206,15 @@ fn walk(chart: &CompiledChart, flat: &FlatMachine, events: &[String], seed: u64)
         let unknown = || kinds.iter().find_map(|kind| flat.events.iter().position(|it| it == kind));
         let index = index.or_else(unknown);
         let stays = FlatPath { pieces: Vec::new(), to: state };
-        let way = index.map_or(&stays, |index| &flat.ways[state][index]);
-        state = follow(flat, way, (seed, step), &mut lines);
+        let path = index.map_or(&stays, |index| &flat.paths[state][index]);
+        state = follow(flat, path, (seed, step), &mut lines);
     }
     lines
 }
 
-fn follow(flat: &FlatMachine, way: &FlatPath, (seed, step): (u64, usize), lines: &mut Vec<Line>) -> usize {
+fn follow(flat: &FlatMachine, path: &FlatPath, (seed, step): (u64, usize), lines: &mut Vec<Line>) -> usize {
     let mut actions: Vec<String> = Vec::new();
-    let (mut way, mut index) = (way, 0);
+    let (mut way, mut index) = (path, 0);
     while let Some(piece) = way.pieces.get(index) {
         index += 1;
         match piece {

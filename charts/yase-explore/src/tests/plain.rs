@@ -28,7 +28,7 @@ type StepOutcomes = BTreeSet<(String, usize)>;
 struct ReferenceExploration {
     /// The observable part of each state.
     states: Vec<(Vec<NodeId>, Status, Vec<NodeId>)>,
-    ways: Vec<StepOutcomes>,
+    outcomes: Vec<StepOutcomes>,
     taken: BTreeSet<TransitionId>,
     entered: BTreeSet<NodeId>,
     failures: BTreeSet<String>,
@@ -50,12 +50,12 @@ fn plain(
                 let to = *known.entry(key).or_insert_with(|| {
                     let running = next.running().into_iter().map(|activation| activation.node).collect();
                     found.states.push((next.configuration(), next.status(), running));
-                    found.ways.push(StepOutcomes::new());
+                    found.outcomes.push(StepOutcomes::new());
                     open.push_back((Some(found.states.len() - 1), next));
                     found.states.len() - 1
                 });
                 if let Some(from) = from {
-                    let ways: &mut StepOutcomes = &mut found.ways[from];
+                    let ways: &mut StepOutcomes = &mut found.outcomes[from];
                     ways.insert((label, to));
                 }
             }
@@ -121,8 +121,8 @@ fn steps(machine: &Machine, cause: &StepCause, found: &mut ReferenceExploration)
 fn are_alike(one: &ReferenceExploration, other: &ReferenceExploration) -> bool {
     let shift = one.states.len();
     let states: Vec<_> = one.states.iter().chain(&other.states).collect();
-    let ways: Vec<Vec<(&str, usize)>> = (one.ways.iter().map(|ways| (0, ways)))
-        .chain(other.ways.iter().map(|ways| (shift, ways)))
+    let ways: Vec<Vec<(&str, usize)>> = (one.outcomes.iter().map(|ways| (0, ways)))
+        .chain(other.outcomes.iter().map(|ways| (shift, ways)))
         .map(|(shift, ways)| ways.iter().map(|(label, to)| (label.as_str(), to + shift)).collect())
         .collect();
     let (mut classes, mut count) = (vec![0; states.len()], 0);

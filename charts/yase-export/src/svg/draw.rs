@@ -165,7 +165,7 @@ impl SvgWriter {
     /// The name of a connector, to its right and slightly above its middle, so that a line from its
     /// side runs below.
     fn beside(&mut self, shape: &Shape) {
-        let (x, mut y) = (shape.at.0 + shape.size.0 + shape.beside / 2.0, center(shape).1 - 7.0);
+        let (x, mut y) = (shape.at.0 + shape.size.0 + shape.name_width / 2.0, center(shape).1 - 7.0);
         for line in shape.title.iter().chain(&shape.notes) {
             self.text("label", (x, y), line);
             y += LABEL_LINE;

@@ -25,7 +25,7 @@ pub(crate) struct Shape {
     /// Lines below the name: its other properties.
     pub(crate) notes: Vec<String>,
     /// The width of the name to the right of a connector.
-    pub(crate) beside: f64,
+    pub(crate) name_width: f64,
 }
 
 impl Shape {
@@ -37,7 +37,7 @@ impl Shape {
 
     /// Its total area, including the name beside it.
     pub(crate) fn area(&self) -> Rectangle {
-        Rectangle::new(self.at, (self.size.0 + self.beside, self.size.1))
+        Rectangle::new(self.at, (self.size.0 + self.name_width, self.size.1))
     }
 
     /// The area of a connector's name: beside it, above the line through its middle.
@@ -46,7 +46,7 @@ impl Shape {
         let lines = (self.title.len() + self.notes.len()) as f64;
         let (left, top) = (self.at.0 + self.size.0 + 2.0, middle - LABEL_LINE);
         let height = LABEL_LINE * lines - 1.0;
-        (self.beside > 0.0).then(|| Rectangle::new((left, top), (self.beside - 2.0, height)))
+        (self.name_width > 0.0).then(|| Rectangle::new((left, top), (self.name_width - 2.0, height)))
     }
 }
 

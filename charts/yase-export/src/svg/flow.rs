@@ -184,7 +184,7 @@ impl Flow {
         let mut rows = vec![Vec::new(); row_of.iter().max().map_or(0, |last| last + 1)];
         row_of.iter().enumerate().for_each(|(place, &row)| rows[row].push(place));
         let cell = |(&child, row): (&NodeId, usize)| {
-            let (size, beside) = (layout.shape(child).size, layout.shape(child).beside);
+            let (size, beside) = (layout.shape(child).size, layout.shape(child).name_width);
             let (left, right) = (size.0 / 2.0, size.0 / 2.0 + beside);
             let grows = matches!(chart.node(child).kind, NodeKind::Basic | NodeKind::Or | NodeKind::And);
             FlowCell { size, row, left, right, height: size.1, grows, ..FlowCell::default() }

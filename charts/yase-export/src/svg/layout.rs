@@ -40,7 +40,7 @@ pub(crate) fn layout<'m>(chart: &Statechart, marks: &'m Highlights) -> DrawingLa
             kind => {
                 let shape = layout.shape_mut(id);
                 shape.size = placed::at_least(chart, id, leaf_size(kind, shape));
-                shape.beside = if kind == NodeKind::Basic { 0.0 } else { beside(shape) };
+                shape.name_width = if kind == NodeKind::Basic { 0.0 } else { beside(shape) };
             }
         }
     }

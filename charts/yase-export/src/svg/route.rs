@@ -179,7 +179,7 @@ impl Router {
             let place = self.grid.place((at.0 + right, at.1 + down))?;
             let (x, y) = area.centre();
             let cost = if at.0 == x || at.1 == y { 0 } else { OFF_CENTRE_COST };
-            Some(Port { at, place, side, cost })
+            Some(Port { at, grid_point: place, side, cost })
         };
         ports.into_iter().filter_map(port).collect()
     }
@@ -188,9 +188,9 @@ impl Router {
         let mut costs = vec![u64::MAX; self.grid.len() * 4];
         let mut before = vec![usize::MAX; self.grid.len() * 4];
         let mut open = BinaryHeap::new();
-        for start in starts.iter().filter(|start| self.grid.is_free(start.place)) {
-            let state = start.place * 4 + start.side as usize;
-            costs[state] = start.cost + self.grid.burden_of(start.place, start.side);
+        for start in starts.iter().filter(|start| self.grid.is_free(start.grid_point)) {
+            let state = start.grid_point * 4 + start.side as usize;
+            costs[state] = start.cost + self.grid.burden_of(start.grid_point, start.side);
             open.push(Reverse((costs[state], state)));
         }
         let mut best: Option<(u64, usize, &Port)> = None;
@@ -202,7 +202,7 @@ impl Router {
                 break;
             }
             let (place, heading) = (state / 4, Direction::ALL[state % 4]);
-            for goal in goals.iter().filter(|goal| goal.place == place) {
+            for goal in goals.iter().filter(|goal| goal.grid_point == place) {
                 let turn = corner(heading, goal.side.reversed());
                 let total = cost + goal.cost + turn + self.grid.burden_of(place, goal.side);
                 if best.is_none_or(|(least, ..)| total < least) {
@@ -237,7 +237,7 @@ impl Router {
             }
             state = before[state];
         }
-        let first = starts.iter().find(|start| start.place * 4 + start.side as usize == state);
+        let first = starts.iter().find(|start| start.grid_point * 4 + start.side as usize == state);
         points.extend(first.map(|start| start.at));
         points.reverse();
         without_straight_corners(&points)
@@ -275,7 +275,7 @@ struct Port {
     /// On the border.
     at: Point,
     /// The grid point in front of it.
-    place: usize,
+    grid_point: usize,
     /// The direction from the border to that grid point.
     side: Direction,
     cost: u64,

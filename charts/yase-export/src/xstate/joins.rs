@@ -8,13 +8,13 @@ use yase::statechart::{NodeId, NodeKind, Statechart, Transition};
 /// that contains all their sources.
 pub(crate) fn joins<'a>(
     chart: &'a Statechart,
-    ways: &mut TransitionResolver<'a>,
+    resolver: &mut TransitionResolver<'a>,
     lost: &mut LossReport<'_>,
 ) -> Vec<Vec<ResolvedTransition<'a>>> {
     let mut joins = vec![Vec::new(); chart.nodes().len()];
     let mut incoming: Vec<Vec<&Transition>> = vec![Vec::new(); chart.nodes().len()];
     for (id, _) in chart.nodes().filter(|&(id, _)| role(chart, id) == ConnectorRole::Rest) {
-        for &segment in ways.outgoing(id) {
+        for &segment in resolver.outgoing(id) {
             incoming[segment.target.0 as usize].push(segment);
         }
     }
@@ -30,11 +30,11 @@ pub(crate) fn joins<'a>(
             continue;
         }
         completions(chart, segments, lost);
-        for way in ways.from(join, lost) {
+        for transition in resolver.from(join, lost) {
             joins[around.0 as usize].push(ResolvedTransition {
                 joined: segments.iter().map(|segment| segment.source).collect(),
-                segments: segments.iter().chain(&way.segments).copied().collect(),
-                targets: way.targets,
+                segments: segments.iter().chain(&transition.segments).copied().collect(),
+                targets: transition.targets,
             });
         }
     }

@@ -103,11 +103,11 @@ impl XStateWriter<'_> {
         let deep = self.chart.node(id).kind == NodeKind::DeepHistory;
         self.writer.value("type", &"history".into());
         self.writer.value("history", &if deep { "deep" } else { "shallow" }.into());
-        let ways = &self.ways[id.0 as usize];
-        if let Some(way) = ways.first() {
-            self.writer.value("target", &self.targets(way));
+        let transitions = &self.transitions[id.0 as usize];
+        if let Some(transition) = transitions.first() {
+            self.writer.value("target", &self.targets(transition));
         }
-        for (index, way) in ways.iter().enumerate() {
+        for (index, way) in transitions.iter().enumerate() {
             let Some(first) = way.segments.first() else { continue };
             for connector in way.via(self.chart) {
                 self.lost.kind(connector, "nothing, because it is on the path from a history to its default");
@@ -165,8 +165,8 @@ impl XStateWriter<'_> {
     fn initial(&mut self, id: NodeId) {
         let children = self.chart.children(id);
         let merged = children.iter().copied().find(|child| self.merged[child.0 as usize]);
-        let way = merged.and_then(|start| self.ways[start.0 as usize].first());
-        if let Some(way) = way {
+        let transition = merged.and_then(|start| self.transitions[start.0 as usize].first());
+        if let Some(way) = transition {
             let target: JsonValue = way.targets.first().map_or("", |&it| self.ids.of_node(it)).into();
             let actions: Vec<JsonValue> =
                 way.segments.iter().flat_map(|it| actions(&it.expression.actions)).collect();
@@ -207,16 +207,26 @@ impl XStateWriter<'_> {
         if is_history && self.chart.children(id).is_empty() {
             return table;
         }
-        for way in &self.ways[id.0 as usize] {
-            match self.occasion(id, way) {
+        for transition in &self.transitions[id.0 as usize] {
+            match self.occasion(id, transition) {
                 XStateTrigger::On(events) => {
                     for event in events {
-                        add(&mut table.on, event, self.transition(id, way, way.guard(self.chart)));
+                        add(
+                            &mut table.on,
+                            event,
+                            self.transition(id, transition, transition.guard(self.chart)),
+                        );
                     }
                 }
-                XStateTrigger::After(delay) => add(&mut table.after, delay, self.transition(id, way, None)),
-                XStateTrigger::Done => table.done.push(self.transition(id, way, way.guard(self.chart))),
-                XStateTrigger::Always => table.always.push(self.transition(id, way, way.guard(self.chart))),
+                XStateTrigger::After(delay) => {
+                    add(&mut table.after, delay, self.transition(id, transition, None))
+                }
+                XStateTrigger::Done => {
+                    table.done.push(self.transition(id, transition, transition.guard(self.chart)))
+                }
+                XStateTrigger::Always => {
+                    table.always.push(self.transition(id, transition, transition.guard(self.chart)))
+                }
             }
         }
         table
@@ -246,13 +256,14 @@ impl XStateWriter<'_> {
     }
 
     /// The connectors of a path, and the properties of its segments besides their expressions.
-    fn meta_of_way(&self, way: &ResolvedTransition<'_>) -> JsonMembers {
+    fn meta_of_way(&self, transition: &ResolvedTransition<'_>) -> JsonMembers {
         let mut meta = JsonMembers::new();
-        let via: Vec<JsonValue> = way.via(self.chart).into_iter().map(|id| self.connector(id)).collect();
+        let via: Vec<JsonValue> =
+            transition.via(self.chart).into_iter().map(|id| self.connector(id)).collect();
         if !via.is_empty() {
             meta.push(("via".into(), JsonValue::List(via)));
         }
-        let said: Vec<JsonValue> = way
+        let said: Vec<JsonValue> = transition
             .segments
             .iter()
             .map(|segment| modifiers(segment).trim().to_owned())
@@ -270,9 +281,9 @@ impl XStateWriter<'_> {
         format!("{} {}", kind_word(node.kind), node.name).trim_end().into()
     }
 
-    fn targets(&self, way: &ResolvedTransition<'_>) -> JsonValue {
+    fn targets(&self, transition: &ResolvedTransition<'_>) -> JsonValue {
         let target = |id: &NodeId| JsonValue::from(format!("#{}", self.ids.of_node(*id)));
-        match way.targets.as_slice() {
+        match transition.targets.as_slice() {
             [only] => target(only),
             several => JsonValue::List(several.iter().map(target).collect()),
         }

@@ -54,10 +54,10 @@ impl<'a> TimerStarts<'a> {
 
     /// The delay after the entry of its source at which a path is taken, if it waits for nothing
     /// else.
-    pub(crate) fn delay(&self, state: NodeId, way: &ResolvedTransition<'_>) -> Option<Duration> {
+    pub(crate) fn delay(&self, state: NodeId, transition: &ResolvedTransition<'_>) -> Option<Duration> {
         let node = self.chart.node(state);
-        let first = way.segments.first()?;
-        let alone = way.segments.iter().skip(1).all(|segment| segment.expression.guard.is_none());
+        let first = transition.segments.first()?;
+        let alone = transition.segments.iter().skip(1).all(|segment| segment.expression.guard.is_none());
         if node.kind != NodeKind::Basic || node.activity.is_some() || first.internal || !alone {
             return None;
         }

@@ -82,8 +82,8 @@ impl<'a> TransitionResolver<'a> {
     pub(crate) fn from(&mut self, id: NodeId, lost: &mut LossReport<'_>) -> Vec<ResolvedTransition<'a>> {
         let mut found = Vec::new();
         let mut open: Vec<Vec<&Transition>> = self.outgoing(id).iter().rev().map(|&it| vec![it]).collect();
-        while let Some(way) = open.pop() {
-            let Some(&last) = way.last() else { continue };
+        while let Some(transitions) = open.pop() {
+            let Some(&last) = transitions.last() else { continue };
             if self.left == 0 {
                 lost.report_omitted(format!(
                     "there are too many paths; the one that ends with {}",
@@ -94,21 +94,24 @@ impl<'a> TransitionResolver<'a> {
             self.left -= 1;
             let target = last.target;
             match role(self.chart, target) {
-                ConnectorRole::Rest => {
-                    found.push(ResolvedTransition { joined: vec![], segments: way, targets: vec![target] })
-                }
+                ConnectorRole::Rest => found.push(ResolvedTransition {
+                    joined: vec![],
+                    segments: transitions,
+                    targets: vec![target],
+                }),
                 ConnectorRole::Branch if self.outgoing(target).is_empty() => {
                     lost.report_omitted(format!("{} leads nowhere", lost.arrow(last)));
                 }
-                ConnectorRole::Branch if way.len() == MAX_SEGMENTS => {
+                ConnectorRole::Branch if transitions.len() == MAX_SEGMENTS => {
                     lost.report_omitted(format!("{} is on a path that does not end", lost.arrow(last)));
                 }
                 ConnectorRole::Branch => {
                     let next = self.outgoing(target).iter().rev();
-                    open.extend(next.map(|&segment| [&way[..], &[segment]].concat()));
+                    open.extend(next.map(|&segment| [&transitions[..], &[segment]].concat()));
                 }
-                ConnectorRole::Fork => found.extend(self.fork(way, target, lost)),
-                ConnectorRole::Join if way.len() == 1 && role(self.chart, id) == ConnectorRole::Rest => {}
+                ConnectorRole::Fork => found.extend(self.fork(transitions, target, lost)),
+                ConnectorRole::Join
+                    if transitions.len() == 1 && role(self.chart, id) == ConnectorRole::Rest => {}
                 ConnectorRole::Join => {
                     lost.report_omitted(format!("{} leads from connector to connector", lost.arrow(last)))
                 }
@@ -119,11 +122,11 @@ impl<'a> TransitionResolver<'a> {
 
     fn fork(
         &self,
-        way: Vec<&'a Transition>,
+        transitions: Vec<&'a Transition>,
         fork: NodeId,
         lost: &mut LossReport<'_>,
     ) -> Option<ResolvedTransition<'a>> {
-        let (mut segments, mut targets) = (way, Vec::new());
+        let (mut segments, mut targets) = (transitions, Vec::new());
         for &branch in self.outgoing(fork) {
             if role(self.chart, branch.target) == ConnectorRole::Rest {
                 segments.push(branch);
@@ -158,7 +161,7 @@ impl ResolvedTransition<'_> {
         let guard = match operands.as_slice() {
             [] => None,
             [only] => Some(only.clone()),
-            _ => Some(Expression { kind: ExpressionKind::And(operands), place: TextPosition::default() }),
+            _ => Some(Expression { kind: ExpressionKind::And(operands), position: TextPosition::default() }),
         };
         match self.trigger() {
             Some(Trigger::Not(event)) => {
@@ -188,8 +191,8 @@ struct In(String);
 
 impl In {
     fn expression(self) -> Expression {
-        let name = Name { text: self.0, place: TextPosition::default() };
-        Expression { kind: ExpressionKind::In(name), place: TextPosition::default() }
+        let name = Name { text: self.0, position: TextPosition::default() };
+        Expression { kind: ExpressionKind::In(name), position: TextPosition::default() }
     }
 }
 

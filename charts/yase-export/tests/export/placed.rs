@@ -112,8 +112,8 @@ fn an_arrow_goes_by_its_corners_and_the_page_holds_them() {
     let find = |chart: &Statechart, from, to| {
         chart.transitions().find(|(_, it)| (it.source, it.target) == (from, to)).unwrap().0
     };
-    let way = find(&light, on, off);
-    light.layout.bends.insert(way, vec![(900.0, 20.0), (900.0, 40.0)]);
+    let transition = find(&light, on, off);
+    light.layout.bends.insert(transition, vec![(900.0, 20.0), (900.0, 40.0)]);
     let svg = to_svg(&light);
     let root = boxes(&svg, "or")[0];
     let bent: Vec<Vec<Point>> = arrows(&svg).into_iter().filter(|it| it.len() == 4).collect();

@@ -61,7 +61,7 @@ impl NameContext<'_> {
         };
         let message = format!("`{}` is a field; only whole messages can be absent", field.text);
         let hint = "compare the message before it with NULL";
-        Err(vec![Diagnostic::error("E0138", field.place.0, message).with_hint(hint)])
+        Err(vec![Diagnostic::error("E0138", field.position.0, message).with_hint(hint)])
     }
 
     fn comparison(

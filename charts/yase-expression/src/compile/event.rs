@@ -38,7 +38,7 @@ impl NameContext<'_> {
             return Ok(events.intern(&path.text()));
         }
         let message = format!("`{path}` is a message, and messages are not raised");
-        let diagnostic = Diagnostic::error("E0144", path.place.0, message);
+        let diagnostic = Diagnostic::error("E0144", path.position.0, message);
         Err(vec![diagnostic.with_hint("give the event another name, or use `publish`")])
     }
 
@@ -64,10 +64,10 @@ impl NameContext<'_> {
             (Origin::Own, None) => return Ok((source.entry, None)),
             (Origin::Host(host), None) => return Ok((source.entry, Some(host))),
             (Origin::Own | Origin::Host(_), Some(field)) => {
-                (field.place, format!("`{}` is a field; a trigger names a message", field.text))
+                (field.position, format!("`{}` is a field; a trigger names a message", field.text))
             }
             _ => (
-                path.place,
+                path.position,
                 format!("`{path}` is a message of one publisher; events are the messages of all publishers"),
             ),
         };
@@ -88,7 +88,7 @@ impl NameContext<'_> {
             several => {
                 let forms: Vec<_> = several.iter().map(|topic| full_form(topic)).collect();
                 let message = format!("several topics have the name `{}`", name.text);
-                let diagnostic = Diagnostic::error("E0133", name.place.0, message);
+                let diagnostic = Diagnostic::error("E0133", name.position.0, message);
                 Err(vec![diagnostic.with_hint(format!("write {}", forms.join(" or ")))])
             }
         }

@@ -50,7 +50,7 @@ impl<'a> NameContext<'a> {
             [topic, rest @ ..] => {
                 Ok((ResolvedTopic { entry: self.topic_of_name(topic)?, origin: Origin::Own }, rest))
             }
-            [] => Err(vec![Diagnostic::error("E0132", path.place.0, "there is no name")]),
+            [] => Err(vec![Diagnostic::error("E0132", path.position.0, "there is no name")]),
         }
     }
 
@@ -69,7 +69,7 @@ impl<'a> NameContext<'a> {
                 Some(ValueType::Message(message)) => message,
                 Some(other) => {
                     let text = format!("{} has no field `{}`", describe(other), name.text);
-                    let diagnostic = Diagnostic::error("E0134", name.place.0, text);
+                    let diagnostic = Diagnostic::error("E0134", name.position.0, text);
                     return Err(vec![diagnostic.with_hint(format!("remove `.{}`", name.text))]);
                 }
             };
@@ -77,7 +77,7 @@ impl<'a> NameContext<'a> {
             let Some(entry) = entries.iter().find(|entry| entry.name == name.text) else {
                 let text = format!("the message `{message}` has no field `{}`", name.text);
                 let known = entries.iter().map(|entry| entry.name.as_str());
-                let diagnostic = Diagnostic::error("E0134", name.place.0, text);
+                let diagnostic = Diagnostic::error("E0134", name.position.0, text);
                 return Err(vec![self.unknown(
                     diagnostic,
                     &name.text,
@@ -121,7 +121,7 @@ impl<'a> NameContext<'a> {
         }
         let topics: Vec<_> =
             self.vocabulary.topics.iter().filter(|topic| topic.message == message.text).collect();
-        only(&topics, message.place.0, || format!("messages of type `{}`", message.text))
+        only(&topics, message.position.0, || format!("messages of type `{}`", message.text))
     }
 
     fn topic_of_name(&self, name: &Name) -> CompileResult<&'a TopicEntry> {
@@ -129,14 +129,14 @@ impl<'a> NameContext<'a> {
         if topics.is_empty() {
             return Err(vec![self.unknown_message(name)]);
         }
-        only(&topics, name.place.0, || format!("the name `{}`", name.text))
+        only(&topics, name.position.0, || format!("the name `{}`", name.text))
     }
 
     fn unknown_message(&self, name: &Name) -> Diagnostic {
         let text = format!("there is neither a message nor a topic `{}`", name.text);
         let messages = self.vocabulary.messages.iter().map(|entry| entry.name.as_str());
         let known = messages.chain(self.vocabulary.topics.iter().map(last_segment));
-        let diagnostic = Diagnostic::error("E0132", name.place.0, text);
+        let diagnostic = Diagnostic::error("E0132", name.position.0, text);
         self.unknown(
             diagnostic,
             &name.text,
@@ -151,7 +151,7 @@ impl<'a> NameContext<'a> {
         if topics.is_empty() {
             let text = format!("there is no topic `{}`", name.text);
             let known = self.vocabulary.topics.iter().map(last_segment);
-            let diagnostic = Diagnostic::error("E0132", name.place.0, text);
+            let diagnostic = Diagnostic::error("E0132", name.position.0, text);
             return Err(vec![self.unknown(
                 diagnostic,
                 &name.text,
@@ -166,10 +166,10 @@ impl<'a> NameContext<'a> {
             let text =
                 format!("the topic `{}` has no {} messages of type `{}`", name.text, kind.text, message.text);
             let forms: Vec<_> = topics.iter().map(|topic| full_form(topic)).collect();
-            let diagnostic = Diagnostic::error("E0135", kind.place.0.to(message.place.0), text);
+            let diagnostic = Diagnostic::error("E0135", kind.position.0.to(message.position.0), text);
             return Err(vec![diagnostic.with_hint(format!("write {}", forms.join(" or ")))]);
         }
-        only(&fitting, name.place.0, || format!("the name `{}`", name.text))
+        only(&fitting, name.position.0, || format!("the name `{}`", name.text))
     }
 
     /// Diagnostic for an unknown name. It suggests the nearest known name, or lists all names if

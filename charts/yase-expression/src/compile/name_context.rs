@@ -75,7 +75,7 @@ impl<'a> NameContext<'a> {
         (self.states)(&name.text).ok_or_else(|| {
             let message = format!("there is no state `{}`", name.text);
             let hint = "a state is named by its path, as in `outer/inner`, or the last names of it if they are unique";
-            vec![Diagnostic::error("E0140", name.place.0, message).with_hint(hint)]
+            vec![Diagnostic::error("E0140", name.position.0, message).with_hint(hint)]
         })
     }
 
@@ -83,7 +83,7 @@ impl<'a> NameContext<'a> {
         self.vocabulary.functions.iter().find(|function| function.name == name.text).ok_or_else(|| {
             let message = format!("there is no function `{}`", name.text);
             let known = self.vocabulary.functions.iter().map(|function| function.name.as_str());
-            let diagnostic = Diagnostic::error("E0139", name.place.0, message);
+            let diagnostic = Diagnostic::error("E0139", name.position.0, message);
             vec![self.unknown(
                 diagnostic,
                 &name.text,
@@ -109,7 +109,7 @@ impl<'a> NameContext<'a> {
             all.extend(is_message.then_some("a message"));
             let message = format!("`{path}` has several meanings: {}", all.join(", "));
             return Err(vec![
-                Diagnostic::error("E0131", path.place.0, message).with_hint("rename all but one"),
+                Diagnostic::error("E0131", path.position.0, message).with_hint("rename all but one"),
             ]);
         }
         match (meanings.pop(), as_message) {
@@ -130,7 +130,7 @@ impl<'a> NameContext<'a> {
         let term = if fields.is_empty() {
             if path.bare().is_some() && !matches!(expected, Some(ValueType::Message(_))) {
                 let message = format!("`{path}` is a message, not a value");
-                let diagnostic = Diagnostic::error("E0130", path.place.0, message);
+                let diagnostic = Diagnostic::error("E0130", path.position.0, message);
                 return Err(vec![diagnostic.with_hint(self.fields_hint(path, source.entry))]);
             }
             ValueTerm::Message(source.message_source())
@@ -179,7 +179,7 @@ impl<'a> NameContext<'a> {
     }
 
     fn unknown_name(&self, path: &Path, name: &str, expected: Option<&ValueType>) -> Diagnostic {
-        let span = path.place.0;
+        let span = path.position.0;
         if let Some(enumeration) = self.expected_values(expected) {
             let message = format!("the enumeration `{}` has no value `{name}`", enumeration.name);
             let known = enumeration.values.iter().map(|(value, _)| value.as_str());

@@ -76,7 +76,7 @@ impl Cursor<'_> {
     }
 
     fn push(&self, start: usize, kind: ActionKind, actions: &mut Vec<Action>) {
-        actions.push(Action { kind, place: self.place(self.since(start)) });
+        actions.push(Action { kind, position: self.place(self.since(start)) });
     }
 
     /// `StartTimeout(v, 100ms)`.
@@ -126,7 +126,7 @@ impl Cursor<'_> {
             }
             segments.push(self.name()?);
         }
-        let timer = Path { segments, place: self.place(self.since(name_start)) };
+        let timer = Path { segments, position: self.place(self.since(name_start)) };
         let written = self.advance().span;
         let Some(delay) = decimal(self.source(written), 6) else {
             return self.refuse_delay(written);
@@ -192,7 +192,7 @@ impl Cursor<'_> {
             let hint = "write `Message.set_field(value)` or `Message.field = value`";
             let diagnostic = Diagnostic::error(
                 "E0121",
-                self.local(message.place),
+                self.local(message.position),
                 format!("`{}` is not a setter", message.text()),
             );
             return self.refuse(diagnostic.with_hint(hint));
@@ -208,7 +208,7 @@ impl Cursor<'_> {
 
     fn refuse_action(&mut self, path: &Path) -> Parsed<()> {
         let text = path.text();
-        let span = self.local(path.place);
+        let span = self.local(path.position);
         if self.at(Symbol::OpenParenthesis) {
             let message = format!("`{text}` is called for its effect, but functions have none");
             return self.refuse(Diagnostic::error("E0118", span, message).with_hint(hint_for(&text)));

@@ -118,8 +118,8 @@ impl<'t> Cursor<'t> {
     }
 
     /// The span of a position: the inverse of [`Cursor::place`].
-    pub(crate) fn local(&self, place: TextPosition) -> Span {
-        Span::new(place.0.start - self.offset, place.0.end - self.offset)
+    pub(crate) fn local(&self, position: TextPosition) -> Span {
+        Span::new(position.0.start - self.offset, position.0.end - self.offset)
     }
 
     /// From `start` to the end of the previous token.

@@ -31,7 +31,7 @@ impl Cursor<'_> {
         let open = self.advance().span;
         let inner = self.condition()?;
         self.expect_close_parenthesis(open)?;
-        Ok(Expression { place: self.place(self.since(open.start)), ..inner })
+        Ok(Expression { position: self.place(self.since(open.start)), ..inner })
     }
 
     fn number(&mut self) -> Parsed<Expression> {
@@ -147,7 +147,7 @@ impl Cursor<'_> {
                     .with_hint(hint),
             );
         }
-        let state = Name { text, place: self.place(inside) };
+        let state = Name { text, position: self.place(inside) };
         Ok(self.expression(start, ExpressionKind::In(state)))
     }
 
@@ -198,7 +198,7 @@ impl Cursor<'_> {
 
     fn refuse_arguments<T>(&mut self, path: Path, member: Option<Name>) -> Parsed<T> {
         let member = member.map_or_else(String::new, |name| name.text);
-        let span = self.local(path.place);
+        let span = self.local(path.position);
         let message = format!("the member `{member}` takes no arguments");
         let hint = format!("write `{}.{member}` or `{}.{member}()`", path.text(), path.text());
         self.refuse(Diagnostic::error("E0113", span, message).with_hint(hint))

@@ -13,12 +13,12 @@ use crate::{
 };
 
 fn path(text: &str) -> Path {
-    let name = |text: &str| Name { text: text.into(), place: TextPosition::default() };
-    Path { segments: text.split('.').map(name).collect(), place: TextPosition::default() }
+    let name = |text: &str| Name { text: text.into(), position: TextPosition::default() };
+    Path { segments: text.split('.').map(name).collect(), position: TextPosition::default() }
 }
 
 fn expression(kind: ExpressionKind) -> Expression {
-    Expression { kind, place: TextPosition::default() }
+    Expression { kind, position: TextPosition::default() }
 }
 
 fn variable(text: &str) -> Expression {
@@ -74,7 +74,7 @@ fn nothing_is_the_empty_expression() {
 fn each_part_is_valid_alone_or_with_the_others() {
     let trigger = Some(Trigger::OneOf(vec![path("e")]));
     let guard = Some(variable("g"));
-    let actions = vec![Action { kind: ActionKind::PublishAll, place: TextPosition::default() }];
+    let actions = vec![Action { kind: ActionKind::PublishAll, position: TextPosition::default() }];
     for (text, parts) in [
         ("e", (true, false, false)),
         ("[g]", (false, true, false)),
@@ -287,8 +287,8 @@ fn places_are_bytes_of_the_larger_text() {
     let ExpressionKind::Compare(left, _, right) = &guard.kind else { panic!("a comparison") };
     assert_eq!((under(left.span()), under(right.span())), ("Ball.distance", "1"));
     let ExpressionKind::Variable(path) = &left.kind else { panic!("a variable") };
-    assert_eq!(under(path.segments[1].place.0), "distance");
-    assert_eq!(under(expression.actions[0].place.0), "M.f = 2");
+    assert_eq!(under(path.segments[1].position.0), "distance");
+    assert_eq!(under(expression.actions[0].position.0), "M.f = 2");
 
     let wrong = "entry = M.get_f(1)";
     let (_, diagnostics) = parse_actions_at(&wrong[8..], 8);

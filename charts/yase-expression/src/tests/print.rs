@@ -74,16 +74,17 @@ fn name() -> impl Strategy<Value = Name> {
         1 => prop::sample::select(vec!["and", "NULL", "null", "true", "In", "raise", "publish", "set_x", "State", "a::b"])
             .prop_map(String::from),
     ];
-    text.prop_map(|text| Name { text, place: TextPosition::default() })
+    text.prop_map(|text| Name { text, position: TextPosition::default() })
 }
 
 fn path() -> impl Strategy<Value = Path> {
-    prop::collection::vec(name(), 1..5).prop_map(|segments| Path { segments, place: TextPosition::default() })
+    prop::collection::vec(name(), 1..5)
+        .prop_map(|segments| Path { segments, position: TextPosition::default() })
 }
 
 fn state() -> impl Strategy<Value = Name> {
     let text = prop::sample::select(vec!["stand", "play/(a|b)~", "[x].y*/START", "|x~|2"]);
-    text.prop_map(|text| Name { text: text.into(), place: TextPosition::default() })
+    text.prop_map(|text| Name { text: text.into(), position: TextPosition::default() })
 }
 
 fn comparison() -> impl Strategy<Value = Comparison> {
@@ -107,7 +108,7 @@ fn leaf() -> impl Strategy<Value = ExpressionKind> {
 }
 
 fn expression() -> impl Strategy<Value = Expression> {
-    let placed = |kind| Expression { kind, place: TextPosition::default() };
+    let placed = |kind| Expression { kind, position: TextPosition::default() };
     leaf().prop_map(placed).prop_recursive(6, 40, 4, move |inner| {
         let boxed = inner.clone().prop_map(Box::new);
         let several = prop::collection::vec(inner.clone(), 2..4);
@@ -149,7 +150,7 @@ fn action() -> impl Strategy<Value = Action> {
         }),
         path().prop_map(ActionKind::Raise),
     ];
-    kind.prop_map(|kind| Action { kind, place: TextPosition::default() })
+    kind.prop_map(|kind| Action { kind, position: TextPosition::default() })
 }
 
 fn transition() -> impl Strategy<Value = TransitionExpression> {

@@ -33,21 +33,21 @@ pub(crate) enum ObjectContent {
 /// Names with values, in the order of their first assignment.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct PropertyMap {
-    places: BTreeMap<Arc<str>, usize>,
+    indices: BTreeMap<Arc<str>, usize>,
     members: Vec<(Arc<str>, ScriptValue)>,
 }
 
 impl PropertyMap {
     pub(crate) fn get(&self, name: &str) -> Option<&ScriptValue> {
-        self.places.get(name).map(|&place| &self.members[place].1)
+        self.indices.get(name).map(|&place| &self.members[place].1)
     }
 
     pub(crate) fn set(&mut self, name: &str, value: ScriptValue) {
-        match self.places.get(name) {
+        match self.indices.get(name) {
             Some(&place) => self.members[place].1 = value,
             None => {
                 let name: Arc<str> = name.into();
-                self.places.insert(name.clone(), self.members.len());
+                self.indices.insert(name.clone(), self.members.len());
                 self.members.push((name, value));
             }
         }

@@ -347,16 +347,16 @@ impl DocumentReader<'_> {
 
 /// The actions of a chart for a block: raised events directly, everything else as a script.
 pub(crate) fn actions(block: &Block, span: Span) -> Vec<Action> {
-    let place = yase::expression::TextPosition(span);
+    let position = yase::expression::TextPosition(span);
     let raised = block.iter().map(|content| match content {
         ExecutableContent::Raise(event) => {
-            Some(Action { kind: ActionKind::Raise(event_path(event, span)), place })
+            Some(Action { kind: ActionKind::Raise(event_path(event, span)), position })
         }
         _ => None,
     });
     match raised.collect::<Option<Vec<_>>>() {
         Some(actions) => actions,
-        None => vec![Action { kind: ActionKind::Script(block_text(block)), place }],
+        None => vec![Action { kind: ActionKind::Script(block_text(block)), position }],
     }
 }
 

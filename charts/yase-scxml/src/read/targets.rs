@@ -128,10 +128,10 @@ impl DocumentReader<'_> {
 
     fn expression_of(&self, pending: &PendingTransition) -> TransitionExpression {
         let guard = pending.condition.as_ref().map(|(code, span)| {
-            let place = TextPosition(*span);
+            let position = TextPosition(*span);
             let native =
-                code.compiled().and_then(|script| native(script, &|name| self.is_found(name), place));
-            let script = || Expression { kind: ExpressionKind::Script(code.text.clone()), place };
+                code.compiled().and_then(|script| native(script, &|name| self.is_found(name), position));
+            let script = || Expression { kind: ExpressionKind::Script(code.text.clone()), position };
             native.unwrap_or_else(script)
         });
         TransitionExpression {

@@ -75,7 +75,7 @@ impl SessionTask {
     }
 
     fn action(&self) -> Action {
-        Action { kind: ActionKind::Script(self.text()), place: TextPosition::default() }
+        Action { kind: ActionKind::Script(self.text()), position: TextPosition::default() }
     }
 }
 
@@ -108,7 +108,7 @@ impl PreparedDocument {
         let chart = self.chart.clone();
         for entry in chart.scripts() {
             let index = entry.id.0 as usize;
-            for place in entry.places {
+            for place in entry.locations {
                 match place {
                     ScriptLocation::Guard(_) => {
                         self.conditions[index] = Some(CompiledText::expression(entry.text))

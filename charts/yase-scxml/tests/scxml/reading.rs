@@ -218,8 +218,9 @@ fn states_become_nodes() {
     );
     let start = chart.children(chart.find("or").unwrap())[0];
     assert_eq!(chart.node(start).kind, NodeKind::Start);
-    let ways: Vec<_> = chart.transitions().map(|(_, way)| way).filter(|way| way.source == start).collect();
-    let ActionKind::Script(text) = &ways[0].expression.actions[0].kind else { panic!("no script") };
+    let transitions: Vec<_> =
+        chart.transitions().map(|(_, way)| way).filter(|way| way.source == start).collect();
+    let ActionKind::Script(text) = &transitions[0].expression.actions[0].kind else { panic!("no script") };
     assert_eq!(text, "<log label=\"l\"/>");
     let internal = chart.transitions().filter(|(_, way)| way.internal);
     assert_eq!(internal.count(), 2);

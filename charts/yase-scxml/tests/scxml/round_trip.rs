@@ -234,7 +234,7 @@ fn texts_keep_their_odd_characters() {
     chart
         .node_mut(a)
         .entry
-        .push(Action { kind: ActionKind::Script(script.into()), place: Default::default() });
+        .push(Action { kind: ActionKind::Script(script.into()), position: Default::default() });
     let text = write(&chart).unwrap();
     assert_eq!(read_back(&text).statechart(), &chart, "{text}");
 }

@@ -42,10 +42,10 @@ pub(crate) fn build(
     let layout = NodeOrder::new(chart);
     let roles = NodeRoles::new(chart, &layout, &semantics);
     let (region_of, regions) = regions(chart, &layout);
-    let ways = compound_transitions::find(chart, &layout, &roles, &region_of, &semantics)?;
-    let timer_names = timer_names(chart, &ways, &region_of, regions.len());
+    let paths = compound_transitions::find(chart, &layout, &roles, &region_of, &semantics)?;
+    let timer_names = timer_names(chart, &paths, &region_of, regions.len());
     let (count, segments) =
-        (ways.all().count(), || chart.transitions().map(|(_, segment)| &segment.expression));
+        (paths.all().count(), || chart.transitions().map(|(_, segment)| &segment.expression));
     let builder = ChartCompiler {
         chart,
         vocabulary,
@@ -71,7 +71,7 @@ pub(crate) fn build(
         suggestions: Suggestions::default(),
         names: BriefNames::new(chart),
     };
-    builder.finish(&ways, regions)
+    builder.finish(&paths, regions)
 }
 
 impl Statechart {
@@ -111,17 +111,17 @@ fn has_own_blackboard(chart: &Statechart, node: NodeId) -> bool {
 /// The timers started in each scope, in alphabetical order.
 fn timer_names(
     chart: &Statechart,
-    ways: &CompoundPaths,
+    paths: &CompoundPaths,
     region_of: &[ScopeId],
     count: usize,
 ) -> Vec<Vec<String>> {
     let mut names: Vec<BTreeSet<String>> = vec![BTreeSet::new(); count];
-    for way in ways.all() {
-        for &segment in &way.segments {
-            names[way.region.index()].extend(chart.transition(segment).expression.started_timers());
+    for path in paths.all() {
+        for &segment in &path.segments {
+            names[path.region.index()].extend(chart.transition(segment).expression.started_timers());
         }
     }
-    for segment in unreached(chart, ways) {
+    for segment in unreached(chart, paths) {
         let transition = chart.transition(segment);
         names[region_of[transition.source.0 as usize].index()].extend(transition.expression.started_timers());
     }
@@ -134,9 +134,9 @@ fn timer_names(
 
 /// The segments that no path contains, since their connectors are never entered. They are checked
 /// nevertheless.
-fn unreached(chart: &Statechart, ways: &CompoundPaths) -> Vec<TransitionId> {
+fn unreached(chart: &Statechart, paths: &CompoundPaths) -> Vec<TransitionId> {
     let mut reached = vec![false; chart.transitions().len()];
-    for &segment in ways.all().flat_map(|way| &way.segments) {
+    for &segment in paths.all().flat_map(|path| &path.segments) {
         reached[segment.0 as usize] = true;
     }
     chart.transitions().map(|(id, _)| id).filter(|id| !reached[id.0 as usize]).collect()
@@ -173,15 +173,15 @@ pub(crate) struct ChartCompiler<'a> {
 impl ChartCompiler<'_> {
     fn finish(
         mut self,
-        ways: &CompoundPaths,
+        paths: &CompoundPaths,
         mut regions: Vec<Scope>,
     ) -> Result<CompiledChart, Vec<Diagnostic>> {
         let errors = self.error_events();
         let unnamed = self.events.intern("?");
-        let mut states = self.states(&ways.of, &regions);
-        let choices = ways.choices.iter().map(|late| self.choice(late)).collect();
-        let histories = self.histories(&ways.histories, &mut states);
-        let unreached = unreached(self.chart, ways).into_iter().map(|id| {
+        let mut states = self.states(&paths.of, &regions);
+        let choices = paths.choices.iter().map(|late| self.choice(late)).collect();
+        let histories = self.histories(&paths.histories, &mut states);
+        let unreached = unreached(self.chart, paths).into_iter().map(|id| {
             let region = self.region_of[self.chart.transition(id).source.0 as usize];
             (id, region, self.segment(id, region).effects)
         });
@@ -192,7 +192,7 @@ impl ChartCompiler<'_> {
         }
         let triggers = self.match_events(&mut states);
         let timers = self.timers(&mut regions, &states, &triggers);
-        let joins = self.joins(&ways.joins);
+        let joins = self.joins(&paths.joins);
         let activities: Box<[NodeIndex]> =
             self.layout.places().filter(|place| states[place.index()].activity.is_some()).collect();
         Ok(CompiledChart {
@@ -237,13 +237,13 @@ impl ChartCompiler<'_> {
     }
 
     fn choice(&mut self, late: &DynamicBranches) -> ChoiceNode {
-        ChoiceNode { node: late.node, branches: self.tree(&late.ways, false) }
+        ChoiceNode { node: late.node, branches: self.tree(&late.paths, false) }
     }
 
     /// The HISTORYs in the order of their owners, which store their indices.
-    fn histories(&mut self, ways: &[DynamicBranches], states: &mut [CompiledNode]) -> Box<[HistoryNode]> {
-        let mut histories: Vec<HistoryNode> = ways.iter().map(|late| self.history(late)).collect();
-        histories.sort_by_key(|history| (history.owner, history.place));
+    fn histories(&mut self, branches: &[DynamicBranches], states: &mut [CompiledNode]) -> Box<[HistoryNode]> {
+        let mut histories: Vec<HistoryNode> = branches.iter().map(|late| self.history(late)).collect();
+        histories.sort_by_key(|history| (history.owner, history.node));
         for (number, history) in histories.iter().enumerate() {
             let numbers = &mut states[history.owner.index()].histories;
             *numbers = if Range::is_empty(numbers) { number..number + 1 } else { numbers.start..number + 1 };
@@ -254,10 +254,10 @@ impl ChartCompiler<'_> {
     fn history(&mut self, late: &DynamicBranches) -> HistoryNode {
         let node = self.chart.node(late.node);
         HistoryNode {
-            place: self.layout.place_of(late.node),
+            node: self.layout.place_of(late.node),
             owner: self.layout.place_of(node.parent.unwrap_or(Statechart::ROOT)),
             is_deep: node.kind == NodeKind::DeepHistory,
-            branches: self.tree(&late.ways, false),
+            branches: self.tree(&late.paths, false),
         }
     }
 
@@ -322,7 +322,7 @@ impl ChartCompiler<'_> {
     }
 
     /// The nodes by index, with the paths out of each as branches.
-    fn states(&mut self, ways: &[Vec<CompoundPath>], regions: &[Scope]) -> Vec<CompiledNode> {
+    fn states(&mut self, paths: &[Vec<CompoundPath>], regions: &[Scope]) -> Vec<CompiledNode> {
         let mut activities = 0;
         let places: Vec<NodeIndex> = self.layout.places().collect();
         let mut states = Vec::with_capacity(places.len());
@@ -336,7 +336,7 @@ impl ChartCompiler<'_> {
                 let own = regions.iter().position(|scope| scope.root == place);
                 state.activity_region = own.map_or(state.region, |index| ScopeId(index as u32));
             }
-            let ways = &ways[self.layout.node(place).0 as usize];
+            let ways = &paths[self.layout.node(place).0 as usize];
             state.eventless = self.tree(ways, true);
             state.triggered = self.tree(ways, false);
             states.push(state);
@@ -375,9 +375,14 @@ impl ChartCompiler<'_> {
     }
 
     /// Replaces the values that actions assign by functions, if the chart has them.
-    pub(crate) fn bind_functions(&mut self, effects: &mut [Effect], place: ActionLocation, region: ScopeId) {
+    pub(crate) fn bind_functions(
+        &mut self,
+        effects: &mut [Effect],
+        location: ActionLocation,
+        region: ScopeId,
+    ) {
         if let Some(wiring) = &mut self.wiring {
-            wiring.effects(effects, place, region, &self.timer_names[region.index()]);
+            wiring.effects(effects, location, region, &self.timer_names[region.index()]);
         }
     }
 

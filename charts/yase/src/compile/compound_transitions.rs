@@ -97,7 +97,7 @@ pub(crate) struct CompoundPaths {
 #[derive(Clone, Debug)]
 pub(crate) struct DynamicBranches {
     pub(crate) node: NodeId,
-    pub(crate) ways: Vec<CompoundPath>,
+    pub(crate) paths: Vec<CompoundPath>,
 }
 
 /// A JOIN or an exit point, with the AND whose regions it joins.
@@ -113,7 +113,7 @@ pub(crate) struct JoinSources {
 impl CompoundPaths {
     /// All paths.
     pub(crate) fn all(&self) -> impl Iterator<Item = &CompoundPath> {
-        let late = self.choices.iter().chain(&self.histories).map(|late| &late.ways);
+        let late = self.choices.iter().chain(&self.histories).map(|late| &late.paths);
         self.of.iter().chain(late).flatten()
     }
 }
@@ -224,18 +224,18 @@ enum PathStart<'s> {
 }
 
 impl CompoundPathSearch<'_> {
-    fn out_of_state(&mut self, state: NodeId, ways: &mut Vec<CompoundPath>) {
+    fn out_of_state(&mut self, state: NodeId, paths: &mut Vec<CompoundPath>) {
         for index in 0..self.outgoing[state.0 as usize].len() {
             let id = self.outgoing[state.0 as usize][index];
             let target = self.chart.transition(id).target;
             match self.join_numbers.get(&target) {
                 Some(&join) if self.roles.of(target) == NodeRole::Join && self.takes_together() => {
-                    self.path_through_join(state, target, join, ways)
+                    self.path_through_join(state, target, join, paths)
                 }
                 _ => {
                     let mut trail =
                         PartialPath { open: smallvec![Frontier::Segment(id)], ..PartialPath::default() };
-                    self.follow(PathStart::States(state, &[], None), &mut trail, ways);
+                    self.follow(PathStart::States(state, &[], None), &mut trail, paths);
                 }
             }
         }
@@ -248,7 +248,7 @@ impl CompoundPathSearch<'_> {
     /// The path through a JOIN as one transition: it belongs to its first source in document order.
     /// If completion is examined once, it is examined when the last of the sources completes, in
     /// any order.
-    fn path_through_join(&mut self, state: NodeId, node: NodeId, join: usize, ways: &mut Vec<CompoundPath>) {
+    fn path_through_join(&mut self, state: NodeId, node: NodeId, join: usize, paths: &mut Vec<CompoundPath>) {
         let mut sources = self.joins[join].sources.clone();
         sources.sort_by_key(|&source| self.layout.rank(self.layout.place_of(source)));
         let Some((&first, others)) = sources.split_first() else { return };
@@ -259,7 +259,7 @@ impl CompoundPathSearch<'_> {
         let mut trail =
             PartialPath { segments, open: smallvec![Frontier::Node(node)], ..PartialPath::default() };
         let begin = PathStart::States(first, others, Some(EnablingCondition::AllCompleted(join)));
-        self.follow(begin, &mut trail, ways);
+        self.follow(begin, &mut trail, paths);
     }
 
     /// The paths out of each HISTORY, used when there is no record.
@@ -267,8 +267,8 @@ impl CompoundPathSearch<'_> {
         let mut histories = Vec::new();
         for (id, node) in self.chart.nodes().filter(|(id, _)| self.roles.of(*id) == NodeRole::History) {
             let owner = node.parent.unwrap_or(Statechart::ROOT);
-            let ways = self.paths_out_of_dynamic(id, self.regions[owner.0 as usize]);
-            histories.push(DynamicBranches { node: id, ways });
+            let paths = self.paths_out_of_dynamic(id, self.regions[owner.0 as usize]);
+            histories.push(DynamicBranches { node: id, paths });
         }
         histories
     }
@@ -277,38 +277,38 @@ impl CompoundPathSearch<'_> {
     fn dynamic_branches(&mut self) -> Vec<DynamicBranches> {
         let mut late = Vec::new();
         while let Some(&(node, region)) = self.choices.get(late.len()) {
-            let ways = self.paths_out_of_dynamic(node, region);
-            late.push(DynamicBranches { node, ways });
+            let paths = self.paths_out_of_dynamic(node, region);
+            late.push(DynamicBranches { node, paths });
         }
         late
     }
 
     fn paths_out_of_dynamic(&mut self, node: NodeId, region: ScopeId) -> Vec<CompoundPath> {
-        let mut ways = Vec::new();
+        let mut paths = Vec::new();
         let mut trail = PartialPath { open: smallvec![Frontier::Node(node)], ..PartialPath::default() };
-        self.follow(PathStart::Late(node, region), &mut trail, &mut ways);
-        ways
+        self.follow(PathStart::Late(node, region), &mut trail, &mut paths);
+        paths
     }
 
     /// Follows paths depth first; chains of connectors are short and acyclic, which has been
     /// checked. The trail is restored.
-    fn follow(&mut self, begin: PathStart<'_>, trail: &mut PartialPath, ways: &mut Vec<CompoundPath>) {
+    fn follow(&mut self, begin: PathStart<'_>, trail: &mut PartialPath, paths: &mut Vec<CompoundPath>) {
         if self.count > MAX_WAYS {
             return;
         }
         let Some(open) = trail.open.pop() else {
-            self.complete(begin, trail, ways);
+            self.complete(begin, trail, paths);
             return;
         };
         match open {
             Frontier::Node(node) => {
                 for index in 0..self.outgoing[node.0 as usize].len() {
                     trail.open.push(Frontier::Segment(self.outgoing[node.0 as usize][index]));
-                    self.follow(begin, trail, ways);
+                    self.follow(begin, trail, paths);
                     trail.open.pop();
                 }
             }
-            Frontier::Segment(id) => self.take(begin, id, trail, ways),
+            Frontier::Segment(id) => self.take(begin, id, trail, paths),
         }
         trail.open.push(open);
     }
@@ -318,14 +318,14 @@ impl CompoundPathSearch<'_> {
         begin: PathStart<'_>,
         id: TransitionId,
         trail: &mut PartialPath,
-        ways: &mut Vec<CompoundPath>,
+        paths: &mut Vec<CompoundPath>,
     ) {
         let target = self.chart.transition(id).target;
         let (open, ends) = (trail.open.len(), trail.ends.len());
         trail.segments.push(id);
         let arrival = self.arrival(begin, target, trail);
         if let Some(arrival) = arrival {
-            ways.extend(self.path_that_arrives(begin, arrival, trail));
+            paths.extend(self.path_that_arrives(begin, arrival, trail));
             trail.arrival = Some(PathArrival { passes: true, ..arrival });
         }
         match self.roles.of(target) {
@@ -336,7 +336,7 @@ impl CompoundPathSearch<'_> {
             }
             _ => trail.ends.push(target),
         }
-        self.follow(begin, trail, ways);
+        self.follow(begin, trail, paths);
         trail.segments.pop();
         trail.open.truncate(open);
         trail.ends.truncate(ends);
@@ -345,7 +345,7 @@ impl CompoundPathSearch<'_> {
         }
     }
 
-    fn complete(&mut self, begin: PathStart<'_>, trail: &PartialPath, ways: &mut Vec<CompoundPath>) {
+    fn complete(&mut self, begin: PathStart<'_>, trail: &PartialPath, paths: &mut Vec<CompoundPath>) {
         self.count += 1;
         let source = match begin {
             PathStart::States(source, ..) | PathStart::Late(source, _) => source,
@@ -359,7 +359,7 @@ impl CompoundPathSearch<'_> {
         } else if trail.ends.len() > 1 && !self.are_orthogonal(&trail.ends) {
             self.refuse_fork(trail);
         } else {
-            ways.extend(match begin {
+            paths.extend(match begin {
                 PathStart::Late(source, region) => Some(self.dynamic_path(source, region, trail)),
                 PathStart::States(source, others, condition) => {
                     self.compound_path(source, others, condition, trail)

@@ -61,13 +61,13 @@ impl<'a> FunctionBindings<'a> {
     pub(crate) fn effects(
         &mut self,
         effects: &mut [Effect],
-        place: ActionLocation,
+        location: ActionLocation,
         region: ScopeId,
         timers: &[String],
     ) {
         for (index, effect) in effects.iter_mut().enumerate() {
             if let Effect::Assign { topic, value, .. } = effect {
-                self.value(value, *topic, (place, index), (region, timers));
+                self.value(value, *topic, (location, index), (region, timers));
             }
         }
     }
@@ -76,17 +76,19 @@ impl<'a> FunctionBindings<'a> {
         &mut self,
         operand: &mut Operand,
         topic: TopicId,
-        place: (ActionLocation, usize),
+        location: (ActionLocation, usize),
         (region, timers): (ScopeId, &[String]),
     ) {
-        let assigned = self.program.values.get(&place);
+        let assigned = self.program.values.get(&location);
         let written = assigned.and_then(|assigned| self.sources.get(assigned.target));
         match assigned {
             Some(assigned) if written.is_some_and(|source| source.topic == topic) => {
                 let value = TypedValue { value: assigned.value, slots: self.slots(region, timers) };
                 operand.set_native_value(value, assigned.change.clone());
             }
-            _ => self.found.push(stale(format!("no function gives the value of an action at {:?}", place.0))),
+            _ => self
+                .found
+                .push(stale(format!("no function gives the value of an action at {:?}", location.0))),
         }
     }
 }

@@ -21,7 +21,7 @@ impl NodeIndex {
 /// The index of each node.
 #[derive(Clone, Debug)]
 pub(crate) struct NodeOrder {
-    places: Box<[NodeIndex]>,
+    indices: Box<[NodeIndex]>,
     nodes: Box<[NodeId]>,
     firsts: Box<[NodeIndex]>,
     ranks: Box<[u32]>,
@@ -32,7 +32,7 @@ impl NodeOrder {
     pub(crate) fn new(chart: &Statechart) -> NodeOrder {
         let count = chart.nodes().len();
         let mut layout = NodeOrder {
-            places: vec![NodeIndex(0); count].into(),
+            indices: vec![NodeIndex(0); count].into(),
             nodes: Vec::with_capacity(count).into(),
             firsts: vec![NodeIndex(0); count].into(),
             ranks: vec![0; count].into(),
@@ -53,7 +53,7 @@ impl NodeOrder {
                 open.push((child, NodeIndex(nodes.len() as u32), 0));
             } else {
                 let place = NodeIndex(nodes.len() as u32);
-                layout.places[node.0 as usize] = place;
+                layout.indices[node.0 as usize] = place;
                 layout.firsts[place.index()] = first;
                 layout.ranks[place.index()] = ranks[node.0 as usize];
                 nodes.push(node);
@@ -81,12 +81,12 @@ impl NodeOrder {
     /// The index of a node, if it belongs to the chart.
     #[inline]
     pub(crate) fn place(&self, node: NodeId) -> Option<NodeIndex> {
-        self.places.get(node.0 as usize).copied()
+        self.indices.get(node.0 as usize).copied()
     }
 
     /// The index of a node of the chart.
     pub(crate) fn place_of(&self, node: NodeId) -> NodeIndex {
-        self.places[node.0 as usize]
+        self.indices[node.0 as usize]
     }
 
     #[inline]

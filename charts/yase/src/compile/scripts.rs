@@ -12,7 +12,7 @@ pub struct ScriptEntry<'a> {
     /// Its text.
     pub text: &'a str,
     /// Its locations.
-    pub places: &'a [ScriptLocation],
+    pub locations: &'a [ScriptLocation],
 }
 
 /// The location of a script.
@@ -53,9 +53,9 @@ pub(crate) fn places(chart: &Statechart, scripts: &ScriptInterner) -> Box<[Box<[
     places.into_iter().map(Vec::into_boxed_slice).collect()
 }
 
-fn of_actions(actions: &[Action], place: ActionLocation, note: &mut impl FnMut(&str, ScriptLocation)) {
+fn of_actions(actions: &[Action], location: ActionLocation, note: &mut impl FnMut(&str, ScriptLocation)) {
     for (index, action) in actions.iter().enumerate() {
-        let place = ScriptLocation::Action(place, index);
+        let place = ScriptLocation::Action(location, index);
         match &action.kind {
             ActionKind::Script(text) => note(text, place),
             ActionKind::Assign { value, .. } => walk(value, &mut |text| note(text, place)),

@@ -14,7 +14,7 @@ use crate::statechart::{NodeId, NodeKind, Statechart, Transition, TransitionId};
 
 /// A segment of a path under examination.
 struct PathSegment<'a> {
-    way: &'a CompoundPath,
+    path: &'a CompoundPath,
     /// Its index in the path.
     index: usize,
     transition: &'a Transition,
@@ -24,16 +24,16 @@ impl ChartCompiler<'_> {
     /// The steps of a path; none if it is taken as a whole.
     pub(crate) fn steps(
         &self,
-        way: &CompoundPath,
+        path: &CompoundPath,
         effects: &[(TransitionId, Box<[Effect]>)],
     ) -> Box<[SegmentStep]> {
         if self.semantics.firing != Firing::EachSegment {
             return Box::default();
         }
-        let mut ends = way.leaves.iter().copied();
-        let mut steps = Vec::with_capacity(way.segments.len());
-        for (index, &id) in way.segments.iter().enumerate() {
-            let segment = PathSegment { way, index, transition: self.chart.transition(id) };
+        let mut ends = path.leaves.iter().copied();
+        let mut steps = Vec::with_capacity(path.segments.len());
+        for (index, &id) in path.segments.iter().enumerate() {
+            let segment = PathSegment { path, index, transition: self.chart.transition(id) };
             let mut step = self.step(&segment, &mut ends);
             step.effects = effects.iter().position(|(other, _)| *other == id);
             steps.push(step);
@@ -42,22 +42,22 @@ impl ChartCompiler<'_> {
     }
 
     fn step(&self, segment: &PathSegment<'_>, ends: &mut dyn Iterator<Item = PathEnd>) -> SegmentStep {
-        let (way, target) = (segment.way, segment.transition.target);
+        let (path, target) = (segment.path, segment.transition.target);
         let mut step =
             SegmentStep { exits: None, empties: false, effects: None, enters: Box::default(), end: None };
-        let is_last = segment.index + 1 == way.segments.len();
-        match way.change {
+        let is_last = segment.index + 1 == path.segments.len();
+        match path.change {
             ConfigurationChange::Vacates if is_last => {
-                step.exits = self.inside(self.layout.place_of(way.scope));
+                step.exits = self.inside(self.layout.place_of(path.scope));
                 return step;
             }
-            ConfigurationChange::None if way.leaves[..] == [PathEnd::Node(way.source)] => return step,
+            ConfigurationChange::None if path.leaves[..] == [PathEnd::Node(path.source)] => return step,
             _ => {}
         }
         if self.waits_for_others(segment) {
             let region =
-                way.others.iter().chain([&way.source]).find(|&&node| node == segment.transition.source);
-            let around = self.around_sources(way);
+                path.others.iter().chain([&path.source]).find(|&&node| node == segment.transition.source);
+            let around = self.around_sources(path);
             let region = region.and_then(|&node| node_span::child_towards(self.chart, around, node));
             step.exits = region.and_then(|region| self.inside(self.layout.place_of(region)));
             return step;
@@ -92,7 +92,7 @@ impl ChartCompiler<'_> {
             NodeKind::Choice | NodeKind::Terminate => {
                 (Some(self.position(target)), ends.next().map(|end| self.leaf(end)))
             }
-            NodeKind::Join if self.contains(self.around_sources(way), target) => (None, None),
+            NodeKind::Join if self.contains(self.around_sources(path), target) => (None, None),
             _ => (Some(self.position(target)), None),
         };
         step.enters = around.map(|node| self.down_to(boundary, node)).unwrap_or_default();
@@ -118,20 +118,20 @@ impl ChartCompiler<'_> {
 
     /// Segments into a JOIN that is taken together: all but the last leave their regions only.
     fn waits_for_others(&self, segment: &PathSegment<'_>) -> bool {
-        let way = segment.way;
-        let next = way.segments.get(segment.index + 1).map(|&id| self.chart.transition(id));
-        !way.others.is_empty()
+        let path = segment.path;
+        let next = path.segments.get(segment.index + 1).map(|&id| self.chart.transition(id));
+        !path.others.is_empty()
             && self.kind(segment.transition.target) == NodeKind::Join
             && next.is_some_and(|next| next.target == segment.transition.target)
     }
 
     /// The AND whose regions a JOIN joins on this path.
-    fn around_sources(&self, way: &CompoundPath) -> NodeId {
-        if let Some(arrival) = way.arrival {
+    fn around_sources(&self, path: &CompoundPath) -> NodeId {
+        if let Some(arrival) = path.arrival {
             return self.parent(arrival.region);
         }
-        let spans = way.others.iter().map(|&node| self.span(node));
-        node_span::lowest_node(self.chart, &self.layout, spans.fold(self.span(way.source), NodeSpan::with))
+        let spans = path.others.iter().map(|&node| self.span(node));
+        node_span::lowest_node(self.chart, &self.layout, spans.fold(self.span(path.source), NodeSpan::with))
     }
 
     /// The node inside which a segment leaves and enters.
@@ -146,7 +146,7 @@ impl ChartCompiler<'_> {
         let mut hull =
             self.beside(segment).map(|target| self.span(target)).fold(self.span(target), NodeSpan::with);
         if self.kind(target) == NodeKind::Join || self.kind(source) == NodeKind::Join {
-            hull = hull.with(self.span(self.around_sources(segment.way)));
+            hull = hull.with(self.span(self.around_sources(segment.path)));
         }
         let own = self.stands_in(source);
         let fits = |&node: &NodeId| {
@@ -163,7 +163,7 @@ impl ChartCompiler<'_> {
     fn beside(&self, segment: &PathSegment<'_>) -> impl Iterator<Item = NodeId> {
         let source = segment.transition.source;
         let forks = matches!(self.kind(source), NodeKind::Fork | NodeKind::EntryPoint);
-        let all = segment.way.segments.iter().filter(move |_| forks).map(|&id| self.chart.transition(id));
+        let all = segment.path.segments.iter().filter(move |_| forks).map(|&id| self.chart.transition(id));
         all.filter(move |other| other.source == source).map(|other| other.target)
     }
 
@@ -227,7 +227,7 @@ impl ChartCompiler<'_> {
     /// Whether a path goes on from an entry point to something inside its composite.
     fn leads_inside(&self, segment: &PathSegment<'_>) -> bool {
         let point = segment.transition.target;
-        let Some(&next) = segment.way.segments.get(segment.index + 1) else { return true };
+        let Some(&next) = segment.path.segments.get(segment.index + 1) else { return true };
         let Transition { source, target, .. } = *self.chart.transition(next);
         let on_border = self.kind(target) == NodeKind::ExitPoint && self.parent(target) == self.parent(point);
         source != point || self.contains(self.parent(point), target) && !on_border

@@ -23,9 +23,9 @@ pub(crate) struct CompiledSegment {
 
 impl ChartCompiler<'_> {
     /// Stores the paths of one node, with or without a trigger, as a branch tree.
-    pub(crate) fn tree(&mut self, ways: &[CompoundPath], eventless: bool) -> BranchRange {
+    pub(crate) fn tree(&mut self, paths: &[CompoundPath], eventless: bool) -> BranchRange {
         let ways: Vec<&CompoundPath> =
-            ways.iter().filter(|way| way.condition.is_some() == eventless).collect();
+            paths.iter().filter(|path| path.condition.is_some() == eventless).collect();
         let first = self.compounds.len();
         let branches = self.grow(&ways, 0);
         if ways.iter().any(|way| self.is_drawn_late(way)) {
@@ -35,19 +35,19 @@ impl ChartCompiler<'_> {
     }
 
     /// Whether there is a random choice behind a connector.
-    fn is_drawn_late(&self, way: &CompoundPath) -> bool {
-        way.segments.iter().skip(1).any(|&id| self.chart.transition(id).weight.is_some())
+    fn is_drawn_late(&self, path: &CompoundPath) -> bool {
+        path.segments.iter().skip(1).any(|&id| self.chart.transition(id).weight.is_some())
     }
 
     /// Stores the paths one by one: their compound transitions were created in this order, from
     /// `first` on.
-    fn write_rows(&mut self, ways: &[&CompoundPath], first_branch: usize, first: usize) {
+    fn write_rows(&mut self, paths: &[&CompoundPath], first_branch: usize, first: usize) {
         let start = self.rows.len();
-        for (index, way) in ways.iter().enumerate() {
+        for (index, path) in paths.iter().enumerate() {
             let segments: Vec<CompiledSegment> =
-                way.segments.iter().map(|&id| self.segment(id, way.region)).collect();
+                path.segments.iter().map(|&id| self.segment(id, path.region)).collect();
             let trigger = segments.first().and_then(|segment| segment.trigger);
-            let condition = self.condition(way, trigger);
+            let condition = self.condition(path, trigger);
             self.rows.push(CandidatePath {
                 compound: CompoundTransitionId((first + index) as u32),
                 condition,
@@ -58,14 +58,14 @@ impl ChartCompiler<'_> {
     }
 
     /// Adjacent paths in one scope with equal first segments share branches.
-    fn grow(&mut self, ways: &[&CompoundPath], depth: usize) -> BranchRange {
+    fn grow(&mut self, paths: &[&CompoundPath], depth: usize) -> BranchRange {
         let alike = |a: &&CompoundPath, b: &&CompoundPath| {
             (a.segments[depth], a.region, a.condition, a.arrival)
                 == (b.segments[depth], b.region, b.condition, b.arrival)
         };
         let start = self.branches.len();
         let mut weighted = Vec::new();
-        for group in ways.chunk_by(alike) {
+        for group in paths.chunk_by(alike) {
             let Some(&first) = group.first() else { continue };
             let branch = self.branch(first, depth);
             let index = self.branches.len();
@@ -77,34 +77,34 @@ impl ChartCompiler<'_> {
             self.branches[index].skip = self.branches.len();
         }
         let beside = BranchRange { start, end: self.branches.len() };
-        weighted.into_iter().for_each(|weight| self.weights[weight].beside = beside);
+        weighted.into_iter().for_each(|weight| self.weights[weight].siblings = beside);
         beside
     }
 
-    fn branch(&mut self, way: &CompoundPath, depth: usize) -> SegmentNode {
-        let id = way.segments[depth];
-        let segment = self.segment(id, way.region);
+    fn branch(&mut self, path: &CompoundPath, depth: usize) -> SegmentNode {
+        let id = path.segments[depth];
+        let segment = self.segment(id, path.region);
         let condition = match depth {
-            0 => self.condition(way, segment.trigger),
+            0 => self.condition(path, segment.trigger),
             _ => EnablingCondition::None,
         };
         let weight = self.chart.transition(id).weight.map(|value| {
-            let weight = BranchWeight { value, segment: id, beside: BranchRange::default() };
+            let weight = BranchWeight { value, segment: id, siblings: BranchRange::default() };
             number(&mut self.weights, weight)
         });
-        let is_last = way.segments.len() == depth + 1;
-        let compound = is_last.then(|| self.compound(way));
+        let is_last = path.segments.len() == depth + 1;
+        let compound = is_last.then(|| self.compound(path));
         SegmentNode { condition, guard: segment.guard, weight, compound, skip: 0 }
     }
 
     /// The condition of a path besides its guards.
-    fn condition(&mut self, way: &CompoundPath, trigger: Option<usize>) -> EnablingCondition {
-        if let Some(PathArrival { slot, passes, .. }) = way.arrival {
+    fn condition(&mut self, path: &CompoundPath, trigger: Option<usize>) -> EnablingCondition {
+        if let Some(PathArrival { slot, passes, .. }) = path.arrival {
             let condition = ArrivalCondition { trigger, slot, passes };
             return EnablingCondition::Arrival(number(&mut self.arrivals, condition));
         }
         let trigger = trigger.map(EnablingCondition::Trigger);
-        way.condition.or(trigger).unwrap_or(EnablingCondition::None)
+        path.condition.or(trigger).unwrap_or(EnablingCondition::None)
     }
 
     /// A segment in a scope, compiled on first use.
@@ -161,32 +161,32 @@ impl ChartCompiler<'_> {
         })
     }
 
-    fn compound(&mut self, way: &CompoundPath) -> CompoundTransitionId {
+    fn compound(&mut self, path: &CompoundPath) -> CompoundTransitionId {
         let mut effects = Vec::new();
-        for &id in &way.segments {
-            let segment = self.segment(id, way.region);
+        for &id in &path.segments {
+            let segment = self.segment(id, path.region);
             if !segment.effects.is_empty() {
                 effects.push((id, segment.effects));
             }
         }
-        let (source, scope) = (self.layout.place_of(way.source), self.layout.place_of(way.scope));
-        let transitions = || way.segments.iter().map(|&id| self.chart.transition(id));
-        let is_internal = way.change != ConfigurationChange::Vacates
-            && way.scope == way.source
+        let (source, scope) = (self.layout.place_of(path.source), self.layout.place_of(path.scope));
+        let transitions = || path.segments.iter().map(|&id| self.chart.transition(id));
+        let is_internal = path.change != ConfigurationChange::Vacates
+            && path.scope == path.source
             && transitions().any(|transition| transition.internal);
         let compound = CompoundTransition {
             source,
-            others: way.others.iter().map(|&node| self.layout.place_of(node)).collect(),
-            region: way.region,
+            others: path.others.iter().map(|&node| self.layout.place_of(node)).collect(),
+            region: path.region,
             scope,
-            exits: self.inside(scope).filter(|_| way.change != ConfigurationChange::None),
-            vacates: match way.change {
-                ConfigurationChange::Vacates if self.chart.node(way.scope).kind != NodeKind::Basic => {
+            exits: self.inside(scope).filter(|_| path.change != ConfigurationChange::None),
+            vacates: match path.change {
+                ConfigurationChange::Vacates if self.chart.node(path.scope).kind != NodeKind::Basic => {
                     Some(scope)
                 }
                 _ => None,
             },
-            arrival: way.arrival.map(|arrival| {
+            arrival: path.arrival.map(|arrival| {
                 let region = self.layout.place_of(arrival.region);
                 Arrival {
                     join: arrival.join,
@@ -197,26 +197,26 @@ impl ChartCompiler<'_> {
                     passes: arrival.passes,
                 }
             }),
-            steps: self.steps(way, &effects),
-            leaves: self.leaves(way),
-            entries: self.entries(way),
-            owner: self.owner(way),
+            steps: self.steps(path, &effects),
+            leaves: self.leaves(path),
+            entries: self.entries(path),
+            owner: self.owner(path),
             effects: effects.into(),
             interrupts: transitions().any(|transition| transition.interrupts),
             key: u64::from(!is_internal) << 32 | u64::from(self.layout.rank(source)),
-            segments: way.segments.iter().copied().collect(),
+            segments: path.segments.iter().copied().collect(),
         };
         CompoundTransitionId(number(&mut self.compounds, compound) as u32)
     }
 
     /// The nodes to be entered; empty if the target is not entered.
-    fn leaves(&self, way: &CompoundPath) -> Box<[TransitionTarget]> {
-        let stays = match way.change {
-            ConfigurationChange::None => way.leaves[..] == [End::Node(way.source)],
+    fn leaves(&self, path: &CompoundPath) -> Box<[TransitionTarget]> {
+        let stays = match path.change {
+            ConfigurationChange::None => path.leaves[..] == [End::Node(path.source)],
             ConfigurationChange::Vacates => true,
             ConfigurationChange::Scope => false,
         };
-        if stays { Box::default() } else { way.leaves.iter().map(|&leaf| self.leaf(leaf)).collect() }
+        if stays { Box::default() } else { path.leaves.iter().map(|&leaf| self.leaf(leaf)).collect() }
     }
 
     /// The index range of the nodes inside a node, if there are any.
@@ -235,15 +235,15 @@ impl ChartCompiler<'_> {
 
     /// The entered nodes are known in advance if there is one target, which is a state, and no
     /// START is left in the same step.
-    fn entries(&self, way: &CompoundPath) -> EntryPlan {
-        if way.change != ConfigurationChange::Scope || self.semantics.firing == Firing::EachSegment {
+    fn entries(&self, path: &CompoundPath) -> EntryPlan {
+        if path.change != ConfigurationChange::Scope || self.semantics.firing == Firing::EachSegment {
             return EntryPlan::None;
         }
-        let [End::Node(target)] = way.leaves[..] else { return EntryPlan::Found };
+        let [End::Node(target)] = path.leaves[..] else { return EntryPlan::Found };
         if self.is_history(target) {
             return EntryPlan::Found;
         }
-        let listed = entries::between(self.chart, &self.layout, &self.starts, way.scope, target);
+        let listed = entries::between(self.chart, &self.layout, &self.starts, path.scope, target);
         let goes_on = |list: &entries::InlineVec<NodeIndex>| {
             self.semantics.start == InitialState::SameStep
                 && list.iter().any(|&place| self.chart.node(self.layout.node(place)).kind == NodeKind::Start)
@@ -253,8 +253,8 @@ impl ChartCompiler<'_> {
             .map_or(EntryPlan::Found, |list| EntryPlan::Listed(list.into_iter().collect()))
     }
 
-    fn owner(&self, way: &CompoundPath) -> Owner {
-        match way.leaves.first() {
+    fn owner(&self, path: &CompoundPath) -> Owner {
+        match path.leaves.first() {
             Some(End::Choice(_)) => Owner::Dynamic,
             Some(&End::Node(node)) => Owner::State(self.layout.place_of(self.owner_of(node))),
             Some(End::Terminate) | None => Owner::None,

@@ -16,7 +16,7 @@ use crate::vocabulary::{FieldId, TopicId, Value};
 /// starts.
 #[derive(Clone, Copy)]
 pub(crate) struct ActionContext {
-    pub(crate) place: ActionLocation,
+    pub(crate) location: ActionLocation,
     pub(crate) region: ScopeId,
     pub(crate) owner: Owner,
 }
@@ -29,19 +29,19 @@ impl<H: Host> Macrostep<'_, H> {
             return;
         }
         if self.run.log.wanted {
-            self.run.log.effects.push(scene.place);
+            self.run.log.effects.push(scene.location);
         }
         for (index, effect) in effects.iter().enumerate() {
             if let Err(error) = self.execute(effect, scene) {
-                self.action_failed(scene.place, index, &error);
+                self.action_failed(scene.location, index, &error);
             }
         }
     }
 
     #[cold]
-    pub(crate) fn action_failed(&mut self, place: ActionLocation, index: usize, error: &ActionError) {
+    pub(crate) fn action_failed(&mut self, location: ActionLocation, index: usize, error: &ActionError) {
         self.run.raise(self.chart, self.chart.errors.action, true, 0);
-        self.host.report(self.chart, Notice::ActionFailed { place, index, error });
+        self.host.report(self.chart, Notice::ActionFailed { place: location, index, error });
     }
 
     /// Actions of the host are forwarded directly.

@@ -154,14 +154,14 @@ impl<H: Host> Macrostep<'_, H> {
         weight: &BranchWeight,
         search: BranchQuery<'_>,
     ) -> Option<CompoundTransitionId> {
-        let mut lots = self.weighted_segments(weight.beside, search);
+        let mut lots = self.weighted_segments(weight.siblings, search);
         if lots.first().is_none_or(|first| first.first != index) {
             return None;
         }
         let mut known = 0;
         while !lots.is_empty() {
             let lot = lots.remove(self.next_weighted_segment(&lots, &mut known));
-            let found = self.try_segment(lot, weight.beside.end, search);
+            let found = self.try_segment(lot, weight.siblings.end, search);
             if found.is_some() {
                 return found;
             }

@@ -131,12 +131,12 @@ impl<H: Host> Macrostep<'_, H> {
     /// enabled.
     pub(crate) fn follow(&mut self, branches: BranchRange, scope: NodeIndex) -> Result<bool, StepError> {
         let Some(id) = self.first_open_path(branches) else { return Ok(false) };
-        let way = &self.chart.compounds[id.0 as usize];
+        let compound = &self.chart.compounds[id.0 as usize];
         if self.run.log.wanted {
-            self.run.log.taken.extend_from_slice(&way.segments);
+            self.run.log.taken.extend_from_slice(&compound.segments);
         }
-        self.do_actions(way);
-        self.mark_leaves(&way.leaves, scope)?;
+        self.do_actions(compound);
+        self.mark_leaves(&compound.leaves, scope)?;
         Ok(true)
     }
 
@@ -175,7 +175,7 @@ impl<H: Host> Macrostep<'_, H> {
         if self.run.unbound_timers.is_empty() {
             return;
         }
-        let is_history = self.chart.histories.iter().find(|history| history.place == target);
+        let is_history = self.chart.histories.iter().find(|history| history.node == target);
         let owner = is_history.map_or(target, |history| history.owner);
         while let Some(timer) = self.run.unbound_timers.pop() {
             self.run.timers.bind(timer, owner);
@@ -197,7 +197,7 @@ impl<H: Host> Macrostep<'_, H> {
             self.host.inherit(state.region, around);
         }
         let scene = ActionContext {
-            place: ActionLocation::Entry(node),
+            location: ActionLocation::Entry(node),
             region: state.region,
             owner: Owner::State(place),
         };

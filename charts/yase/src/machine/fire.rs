@@ -156,39 +156,39 @@ impl<H: Host> Macrostep<'_, H> {
     /// Executes the actions of a transition, and determines its targets.
     fn execute_effects(
         &mut self,
-        way: &CompoundTransition,
+        compound: &CompoundTransition,
         ends_early: Option<&Arrival>,
     ) -> Result<(), StepError> {
         if let Some(arrival) = ends_early {
-            self.do_actions_up_to(way, arrival);
+            self.do_actions_up_to(compound, arrival);
             return Ok(());
         }
-        self.do_actions(way);
-        match way.entries {
+        self.do_actions(compound);
+        match compound.entries {
             EntryPlan::Listed(_) => Ok(()),
-            EntryPlan::None | EntryPlan::Found => self.mark_leaves(&way.leaves, way.scope),
+            EntryPlan::None | EntryPlan::Found => self.mark_leaves(&compound.leaves, compound.scope),
         }
     }
 
     /// Executes the actions of a path, segment by segment.
     #[inline(never)]
-    pub(crate) fn do_actions(&mut self, way: &CompoundTransition) {
-        for (segment, effects) in &way.effects {
+    pub(crate) fn do_actions(&mut self, compound: &CompoundTransition) {
+        for (segment, effects) in &compound.effects {
             let scene = ActionContext {
-                place: ActionLocation::Transition(*segment),
-                region: way.region,
-                owner: way.owner,
+                location: ActionLocation::Transition(*segment),
+                region: compound.region,
+                owner: compound.owner,
             };
             self.perform(effects, scene);
         }
     }
 
     /// Executes the actions of the segments up to an arrival.
-    fn do_actions_up_to(&mut self, way: &CompoundTransition, arrival: &Arrival) {
-        let taken = &way.segments[..=arrival.segment];
-        for (segment, effects) in way.effects.iter().filter(|(segment, _)| taken.contains(segment)) {
-            let place = ActionLocation::Transition(*segment);
-            self.perform(effects, ActionContext { place, region: way.region, owner: Owner::None });
+    fn do_actions_up_to(&mut self, compound: &CompoundTransition, arrival: &Arrival) {
+        let taken = &compound.segments[..=arrival.segment];
+        for (segment, effects) in compound.effects.iter().filter(|(segment, _)| taken.contains(segment)) {
+            let location = ActionLocation::Transition(*segment);
+            self.perform(effects, ActionContext { location, region: compound.region, owner: Owner::None });
         }
     }
 
@@ -294,11 +294,11 @@ impl<H: Host> Macrostep<'_, H> {
     fn drop_transitions_without_source(&mut self) {
         let mut index = 0;
         while let Some(&id) = self.run.selection.selected.get(index) {
-            let (way, others) = (self.compound(id), &self.run.selection.selected);
+            let (compound, others) = (self.compound(id), &self.run.selection.selected);
             let is_left = |source: NodeIndex| {
                 others.iter().any(|&other| other != id && self.compound(other).leaves(source))
             };
-            if way.exits.is_some() && way.arrives().is_none() && way.sources().any(is_left) {
+            if compound.exits.is_some() && compound.arrives().is_none() && compound.sources().any(is_left) {
                 self.run.selection.selected.remove(index);
             } else {
                 index += 1;

@@ -14,7 +14,7 @@ pub(crate) struct HistoryValue {
     /// Whether there is a value.
     pub(crate) is_known: bool,
     /// For a shallow one the child, for a deep one all nodes that were active inside.
-    pub(crate) places: Vec<NodeIndex>,
+    pub(crate) nodes: Vec<NodeIndex>,
 }
 
 impl MachineState {
@@ -41,19 +41,19 @@ impl MachineState {
             return;
         }
         let record = &mut self.records[number];
-        record.places.clear();
+        record.nodes.clear();
         if history.is_deep {
             let mut next = self.active.next(first, last);
             while let Some(index) = next {
-                record.places.push(NodeIndex(index as u32));
+                record.nodes.push(NodeIndex(index as u32));
                 next = self.active.next(index + 1, last);
             }
         } else if chart.states[history.owner.index()].kind == NodeKind::Or {
             // the child has the highest index among the active nodes inside an OR
-            record.places.extend(self.active.last(first, last).map(|index| NodeIndex(index as u32)));
+            record.nodes.extend(self.active.last(first, last).map(|index| NodeIndex(index as u32)));
         }
         let is_and = chart.states[history.owner.index()].kind == NodeKind::And;
-        record.is_known = is_and || !record.places.is_empty();
+        record.is_known = is_and || !record.nodes.is_empty();
     }
 }
 
@@ -66,7 +66,7 @@ impl<H: Host> Macrostep<'_, H> {
         while let Some(number) = self.marked_history(numbers.clone()) {
             let history = &self.chart.histories[number];
             is_marked = true;
-            self.run.marked.remove(history.place.index());
+            self.run.marked.remove(history.node.index());
             if !self.run.records[number].is_known {
                 match self.semantics().firing {
                     Firing::EachSegment => self.follow_segments(history.branches, true)?,
@@ -75,12 +75,12 @@ impl<H: Host> Macrostep<'_, H> {
                 continue;
             }
             let run = &mut *self.run;
-            run.records[number].places.iter().for_each(|place| run.marked.insert(place.index()));
+            run.records[number].nodes.iter().for_each(|place| run.marked.insert(place.index()));
         }
         Ok(is_marked)
     }
 
     fn marked_history(&self, mut numbers: std::ops::Range<usize>) -> Option<usize> {
-        numbers.find(|&number| self.run.marked.contains(self.chart.histories[number].place.index()))
+        numbers.find(|&number| self.run.marked.contains(self.chart.histories[number].node.index()))
     }
 }

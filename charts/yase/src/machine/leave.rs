@@ -63,7 +63,7 @@ impl<H: Host> Macrostep<'_, H> {
             self.release_activity(place, activity);
         }
         let scene = ActionContext {
-            place: ActionLocation::Exit(self.chart.layout.node(place)),
+            location: ActionLocation::Exit(self.chart.layout.node(place)),
             region: state.region,
             owner: Owner::None,
         };

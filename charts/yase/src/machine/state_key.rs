@@ -89,7 +89,7 @@ impl Machine {
         for record in &run.records {
             key.push(u32::MAX - u32::from(record.is_known));
             if record.is_known {
-                key.extend(record.places.iter().map(|place| place.0));
+                key.extend(record.nodes.iter().map(|place| place.0));
             }
         }
     }
@@ -192,7 +192,7 @@ impl Machine {
     pub fn estimated_bytes(&self) -> usize {
         let sets = 12 * self.run.active.words().count() * size_of::<u64>();
         let slots = self.run.activities.bytes() + self.run.timers.bytes();
-        let records: usize = self.run.records.iter().map(|it| 32 + 8 * it.places.len()).sum();
+        let records: usize = self.run.records.iter().map(|it| 32 + 8 * it.nodes.len()).sum();
         size_of::<Machine>() + sets + slots + records + 64 * self.run.queues.all().count()
     }
 

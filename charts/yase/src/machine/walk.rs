@@ -18,12 +18,12 @@ impl<H: Host> Macrostep<'_, H> {
     /// Takes the segments of a path, all or up to an arrival, and completes what it has entered.
     pub(crate) fn walk_segments(
         &mut self,
-        way: &CompoundTransition,
+        compound: &CompoundTransition,
         ends_early: Option<&Arrival>,
     ) -> Result<(), StepError> {
         let base = self.run.incomplete.len();
-        self.take_segments(way, ends_early)?;
-        self.bind_other_timers(way, ends_early);
+        self.take_segments(compound, ends_early)?;
+        self.bind_other_timers(compound, ends_early);
         self.enter_other_regions(base)
     }
 
@@ -35,26 +35,26 @@ impl<H: Host> Macrostep<'_, H> {
         is_whole: bool,
     ) -> Result<bool, StepError> {
         let Some(id) = self.first_open_path(branches) else { return Ok(false) };
-        let way = &self.chart.compounds[id.0 as usize];
+        let compound = &self.chart.compounds[id.0 as usize];
         if self.run.log.wanted {
-            self.run.log.taken.extend_from_slice(&way.segments);
+            self.run.log.taken.extend_from_slice(&compound.segments);
         }
         match is_whole {
-            true => self.walk_segments(way, None)?,
-            false => self.take_segments(way, None)?,
+            true => self.walk_segments(compound, None)?,
+            false => self.take_segments(compound, None)?,
         }
         Ok(true)
     }
 
     fn take_segments(
         &mut self,
-        way: &CompoundTransition,
+        compound: &CompoundTransition,
         ends_early: Option<&Arrival>,
     ) -> Result<(), StepError> {
-        let count = ends_early.map_or(way.steps.len(), |arrival| arrival.segment);
-        for step in &way.steps[..count] {
+        let count = ends_early.map_or(compound.steps.len(), |arrival| arrival.segment);
+        for step in &compound.steps[..count] {
             self.leave_for(step);
-            self.act_on_segment(way, step);
+            self.act_on_segment(compound, step);
             self.enter_around(step)?;
             if self.is_over() {
                 break;
@@ -64,15 +64,15 @@ impl<H: Host> Macrostep<'_, H> {
             if let Some((first, last)) = arrival.inside {
                 self.leave_between(first, last);
             }
-            self.act_on_segment(way, &way.steps[arrival.segment]);
+            self.act_on_segment(compound, &compound.steps[arrival.segment]);
         }
         Ok(())
     }
 
     /// Binds the timers that were started after the last target was entered to the first one.
-    fn bind_other_timers(&mut self, way: &CompoundTransition, ends_early: Option<&Arrival>) {
+    fn bind_other_timers(&mut self, compound: &CompoundTransition, ends_early: Option<&Arrival>) {
         while let Some(timer) = self.run.unbound_timers.pop() {
-            if let (Owner::State(state), None) = (way.owner, ends_early) {
+            if let (Owner::State(state), None) = (compound.owner, ends_early) {
                 self.run.timers.bind(timer, state);
             }
         }
@@ -92,10 +92,10 @@ impl<H: Host> Macrostep<'_, H> {
     }
 
     /// The timers that it starts belong to the next target.
-    fn act_on_segment(&mut self, way: &CompoundTransition, step: &SegmentStep) {
-        if let Some((segment, effects)) = step.effects.and_then(|index| way.effects.get(index)) {
-            let place = ActionLocation::Transition(*segment);
-            self.perform(effects, ActionContext { place, region: way.region, owner: Owner::Dynamic });
+    fn act_on_segment(&mut self, compound: &CompoundTransition, step: &SegmentStep) {
+        if let Some((segment, effects)) = step.effects.and_then(|index| compound.effects.get(index)) {
+            let location = ActionLocation::Transition(*segment);
+            self.perform(effects, ActionContext { location, region: compound.region, owner: Owner::Dynamic });
         }
     }
 
@@ -134,7 +134,7 @@ impl<H: Host> Macrostep<'_, H> {
 
     /// Enters what is inside a target, or what a HISTORY stands for.
     fn enter_end(&mut self, place: NodeIndex) -> Result<(), StepError> {
-        match self.chart.histories.iter().find(|history| history.place == place) {
+        match self.chart.histories.iter().find(|history| history.node == place) {
             None => self.enter_inside(place),
             Some(history) => {
                 self.run.marked.insert(place.index());

@@ -19,7 +19,7 @@ pub(crate) struct SnapshotTranslator<'a> {
     plan: &'a NodeMapping,
     /// The new chart.
     chart: &'a CompiledChart,
-    ways: BTreeMap<&'a [TransitionId], CompoundTransitionId>,
+    compounds: BTreeMap<&'a [TransitionId], CompoundTransitionId>,
     pub(crate) report: MigrationReport,
     pub(crate) conflicts: Vec<Conflict>,
 }
@@ -29,7 +29,7 @@ impl<'a> SnapshotTranslator<'a> {
         SnapshotTranslator {
             plan,
             chart: &plan.new,
-            ways: ways(&plan.new),
+            compounds: ways(&plan.new),
             report: MigrationReport::default(),
             conflicts: Vec::new(),
         }
@@ -197,7 +197,7 @@ impl<'a> SnapshotTranslator<'a> {
 
     fn joined(&mut self, way: &TransitionPath) -> Option<TransitionPath> {
         let found = self.way(way).filter(|found| {
-            let compound = self.plan.new_paths.find_way(&self.ways, found);
+            let compound = self.plan.new_paths.find_way(&self.compounds, found);
             compound.is_some_and(|compound| self.chart.compounds[compound.0 as usize].arrives().is_some())
         });
         let verdict = match &found {
@@ -234,7 +234,7 @@ impl<'a> SnapshotTranslator<'a> {
     fn history_nodes(&self, record: &HistoryRecord) -> Option<HistoryRecord> {
         let (chart, layout) = (self.chart, &self.chart.layout);
         let (_, node) = self.node(&record.history)?;
-        let history = chart.histories.iter().find(|history| history.place == layout.place_of(node))?;
+        let history = chart.histories.iter().find(|history| history.node == layout.place_of(node))?;
         let nodes: Option<Vec<NodeId>> =
             record.nodes.iter().map(|path| self.node(path).map(|(_, node)| node)).collect();
         let mut places = BTreeSet::new();
@@ -247,7 +247,7 @@ impl<'a> SnapshotTranslator<'a> {
         }
         let path = |place| self.plan.new_paths.place(chart, place);
         can_remember(chart, history, &places).then(|| HistoryRecord {
-            history: path(history.place),
+            history: path(history.node),
             nodes: places.into_iter().map(path).collect(),
         })
     }
@@ -351,7 +351,7 @@ impl<'a> SnapshotTranslator<'a> {
     fn way(&self, way: &TransitionPath) -> Option<TransitionPath> {
         let segments: Option<Vec<TransitionId>> = way.iter().map(|segment| self.segment(segment)).collect();
         let segments = segments?;
-        self.ways.get(segments.as_slice())?;
+        self.compounds.get(segments.as_slice())?;
         Some(segments.iter().map(|&segment| self.plan.new_paths.segment(segment).to_owned()).collect())
     }
 

@@ -43,8 +43,8 @@ fn draw(folder: &Path, name: &str, tint: [f32; 3]) {
 }
 
 fn write(folder: &Path, name: &str, image: &Image<'_>) {
-    let places = (0..image.height()).flat_map(|y| (0..image.width()).map(move |x| (x, y)));
-    let rgb: Vec<u8> = places.flat_map(|(x, y)| rgb_of_yuv(image.yuv(x, y))).collect();
+    let span = (0..image.height()).flat_map(|y| (0..image.width()).map(move |x| (x, y)));
+    let rgb: Vec<u8> = span.flat_map(|(x, y)| rgb_of_yuv(image.yuv(x, y))).collect();
     let png = monas_scene::encode_png(image.width(), image.height(), &rgb).expect("a PNG");
     fs::write(folder.join(name), png).expect("the folder takes files");
 }

@@ -34,9 +34,9 @@ impl Blackboard {
 
     /// Replaces the inbox by what `other` reads, or would read.
     fn adopt_inbox(&mut self, channel: Channel, other: &Blackboard) {
-        let theirs = other.places[channel.topic.index()].inbox(channel.host);
+        let theirs = other.entries[channel.topic.index()].inbox(channel.host);
         let anew = if theirs.is_none() { self.attached_reading(channel) } else { None };
-        let mine = self.places[channel.topic.index()].inbox_mut(channel.host);
+        let mine = self.entries[channel.topic.index()].inbox_mut(channel.host);
         if let (Some(mine), Some(theirs)) = (mine, theirs.or(anew.as_ref())) {
             mine.take_over(theirs);
         }
@@ -44,8 +44,8 @@ impl Blackboard {
 
     /// Copies an inbox of `other` for a topic that has not been read here.
     fn inherit_inbox(&mut self, channel: Channel, other: &Blackboard) {
-        let mine = self.places[channel.topic.index()].inbox(channel.host);
-        let theirs = other.places[channel.topic.index()].inbox(channel.host);
+        let mine = self.entries[channel.topic.index()].inbox(channel.host);
+        let theirs = other.entries[channel.topic.index()].inbox(channel.host);
         if let (None, Some(theirs)) = (mine, theirs) {
             let inherited = theirs.clone();
             inherited.set_is_read(false);
@@ -54,14 +54,14 @@ impl Blackboard {
     }
 
     fn hide(&mut self, slot: TopicSlot) {
-        if let Some(writing) = self.places[slot.index()].writing.as_mut() {
+        if let Some(writing) = self.entries[slot.index()].writing.as_mut() {
             writing.inherit(std::iter::empty());
         }
     }
 
     fn adopt_outbox(&mut self, slot: TopicSlot, other: &Blackboard) {
         let is_signal = self.hub.declaration(slot).is_some_and(|topic| topic.kind() == RetentionKind::Signal);
-        let Some(theirs) = other.places[slot.index()].writing.as_ref() else { return };
+        let Some(theirs) = other.entries[slot.index()].writing.as_ref() else { return };
         if is_signal || theirs.visible().next().is_none() {
             return;
         }
@@ -76,6 +76,6 @@ impl Blackboard {
         let channels = self.attached.get_mut().iter().copied().chain(written);
         let open = self.open.get_mut();
         open.clear();
-        open.extend(channels.filter(|channel| self.places[channel.topic.index()].is_open(channel.host)));
+        open.extend(channels.filter(|channel| self.entries[channel.topic.index()].is_open(channel.host)));
     }
 }

@@ -71,8 +71,8 @@ impl Blackboard {
 
     /// Whether the topic has been read here, of any host.
     pub fn is_read(&self, slot: TopicSlot) -> bool {
-        let place = self.places.get(slot.index());
-        place.is_some_and(|place| place.inboxes().any(|reading| reading.is_read()))
+        let entry = self.entries.get(slot.index());
+        entry.is_some_and(|place| place.inboxes().any(|reading| reading.is_read()))
     }
 
     /// The topics that have been read here, of any host, in order of first read.

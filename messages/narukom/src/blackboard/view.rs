@@ -128,14 +128,14 @@ impl<'a> HostView<'a> {
     /// Like [`latest_sample`](HostView::latest_sample), but for inspection: it does not count as a
     /// read.
     pub fn shown(self, slot: TopicSlot) -> Option<&'a AnySample> {
-        let reading = self.blackboard.places.get(slot.index())?.inbox(self.host)?;
+        let reading = self.blackboard.entries.get(slot.index())?.inbox(self.host)?;
         self.newest(slot, reading)
     }
 
     /// The newest message of a topic, for inspection: it does not subscribe the blackboard to the
     /// topic, and own signals are still delivered.
     pub fn peek(self, slot: TopicSlot) -> Option<AnySample> {
-        match self.blackboard.places.get(slot.index())?.inbox(self.host) {
+        match self.blackboard.entries.get(slot.index())?.inbox(self.host) {
             Some(reading) => self.newest(slot, reading).cloned(),
             None => self.newest(slot, &self.blackboard.attached_reading(self.channel(slot))?).cloned(),
         }
@@ -150,8 +150,8 @@ impl<'a> HostView<'a> {
 
     /// Like [`lost`](HostView::lost), by slot.
     pub fn lost_at(self, slot: TopicSlot) -> u64 {
-        let place = self.blackboard.places.get(slot.index());
-        place.and_then(|place| place.inbox(self.host)).map_or(0, Inbox::lost)
+        let entry = self.blackboard.entries.get(slot.index());
+        entry.and_then(|place| place.inbox(self.host)).map_or(0, Inbox::lost)
     }
 
     /// The topics of the messages of the last delivery, one per message, in order of arrival.
@@ -171,7 +171,7 @@ impl<'a> HostView<'a> {
         let reading = self.blackboard.attach(self.channel(slot))?;
         reading.set_is_read(true);
         if self.host == HostId::LOCAL
-            && let Some(writing) = &self.blackboard.places[slot.index()].writing
+            && let Some(writing) = &self.blackboard.entries[slot.index()].writing
         {
             writing.mark_seen();
         }
@@ -184,8 +184,8 @@ impl<'a> HostView<'a> {
     where
         'a: 'b,
     {
-        let places: &'a [_] = &self.blackboard.places;
-        let writing = places[slot.index()].writing.as_ref().filter(|_| self.host == HostId::LOCAL);
+        let entries: &'a [_] = &self.blackboard.entries;
+        let writing = entries[slot.index()].writing.as_ref().filter(|_| self.host == HostId::LOCAL);
         let own = writing.and_then(|writing| writing.visible().next_back());
         let newest = own.or_else(|| reading.samples().back());
         newest.filter(|sample| sample.header.local >= reading.oldest(self.blackboard.now))
@@ -195,7 +195,7 @@ impl<'a> HostView<'a> {
     #[inline]
     fn history(self, slot: TopicSlot) -> Option<History<'a>> {
         let reading = self.read_from_now_on(slot)?;
-        let writing = self.blackboard.places[slot.index()].writing.as_deref();
+        let writing = self.blackboard.entries[slot.index()].writing.as_deref();
         let writing = writing.filter(|_| self.host == HostId::LOCAL);
         Some(History::new(reading, writing, self.blackboard.now))
     }

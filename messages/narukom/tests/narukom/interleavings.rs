@@ -43,13 +43,13 @@ enum Step {
 
 fn step() -> impl Strategy<Value = Step> {
     let board = 0..BOARDS;
-    let way = 0..KINDS.len();
+    let span = 0..KINDS.len();
     prop_oneof![
-        4 => (board.clone(), way.clone()).prop_map(|(board, way)| Step::Write(board, way)),
-        1 => (board.clone(), way.clone(), 1..90_usize).prop_map(|(board, way, count)| Step::Burst(board, way, count)),
+        4 => (board.clone(), span.clone()).prop_map(|(board, way)| Step::Write(board, way)),
+        1 => (board.clone(), span.clone(), 1..90_usize).prop_map(|(board, way, count)| Step::Burst(board, way, count)),
         3 => board.clone().prop_map(Step::Publish),
         3 => board.clone().prop_map(Step::Process),
-        4 => (board.clone(), way).prop_map(|(board, way)| Step::Read(board, way)),
+        4 => (board.clone(), span).prop_map(|(board, way)| Step::Read(board, way)),
         1 => (board.clone(), board).prop_map(|(board, other)| Step::Adopt(board, other)),
     ]
 }

@@ -42,8 +42,8 @@ impl GeneratedFunctions {
 
     /// The values of the actions at a location: the index of the action, the message, the function
     /// that computes the value, and the function that sets it.
-    pub(crate) fn values_at(&self, place: ActionLocation) -> impl Iterator<Item = (usize, &[String; 3])> {
-        let actions = self.values.range((place, 0)..=(place, usize::MAX));
+    pub(crate) fn values_at(&self, location: ActionLocation) -> impl Iterator<Item = (usize, &[String; 3])> {
+        let actions = self.values.range((location, 0)..=(location, usize::MAX));
         actions.map(|((_, index), names)| (*index, names))
     }
 
@@ -209,9 +209,9 @@ fn node_description(chart: &CompiledChart, node: NodeId) -> String {
     }
 }
 
-fn place(chart: &CompiledChart, (place, index): (ActionLocation, usize)) -> String {
+fn place(chart: &CompiledChart, (location, index): (ActionLocation, usize)) -> String {
     let statechart = chart.statechart();
-    let (actions, text) = match place {
+    let (actions, text) = match location {
         ActionLocation::Transition(id) => {
             (&statechart.transition(id).expression.actions, transition_description(chart, id))
         }

@@ -153,14 +153,14 @@ impl ChartCodeWriter<'_> {
             let events = node.defer.iter().map(|event| RustCode::Plain(literal(event))).collect();
             code.push(RustCode::call("chart.defer", vec![self.state(id), RustCode::List(events)]));
         }
-        for (method, actions, place) in [
+        for (method, actions, location) in [
             ("entry", &node.entry, ActionLocation::Entry(id)),
             ("exit", &node.exit, ActionLocation::Exit(id)),
         ] {
             if !actions.is_empty() {
                 let text = actions.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ");
                 code.push(about(method, literal(&text)));
-                code.extend(self.values(place));
+                code.extend(self.values(location));
             }
         }
         code
@@ -201,7 +201,7 @@ impl ChartCodeWriter<'_> {
         code
     }
 
-    fn values(&self, place: ActionLocation) -> Vec<RustCode> {
+    fn values(&self, location: ActionLocation) -> Vec<RustCode> {
         let value = |(index, names): (usize, &[String; 3])| {
             let names = names.iter().cloned().map(RustCode::Plain);
             RustCode::call(
@@ -209,7 +209,7 @@ impl ChartCodeWriter<'_> {
                 std::iter::once(RustCode::Plain(index.to_string())).chain(names).collect(),
             )
         };
-        self.functions.values_at(place).map(value).collect()
+        self.functions.values_at(location).map(value).collect()
     }
 }
 

@@ -39,7 +39,7 @@ pub(crate) fn functions(
         }
     }
     guards.into_iter().for_each(|(id, code)| functions.guard(chart, id, code));
-    for (place, region, effects) in chart.effects() {
+    for (location, region, effects) in chart.effects() {
         for (index, effect) in effects.iter().enumerate() {
             let Effect::Assign { topic, field, value } = effect else { continue };
             let target = MessageSource { topic: *topic, origin: Origin::Own };
@@ -48,10 +48,10 @@ pub(crate) fn functions(
                 states,
                 glossary,
                 region,
-                named: named(assigned(chart, place, index)),
+                named: named(assigned(chart, location, index)),
             };
             match writer.assignment(&target, field, value.term()) {
-                Ok(body) => functions.value(chart, (place, index), body),
+                Ok(body) => functions.value(chart, (location, index), body),
                 Err(diagnostic) => found.push(diagnostic),
             }
         }
@@ -70,9 +70,9 @@ fn differs(chart: &CompiledChart, id: TransitionId) -> Diagnostic {
 }
 
 /// The expression that an action assigns.
-fn assigned(chart: &CompiledChart, place: ActionLocation, index: usize) -> Option<&Expression> {
+fn assigned(chart: &CompiledChart, location: ActionLocation, index: usize) -> Option<&Expression> {
     let statechart = chart.statechart();
-    let actions = match place {
+    let actions = match location {
         ActionLocation::Transition(id) => &statechart.transition(id).expression.actions,
         ActionLocation::Entry(id) => &statechart.node(id).entry,
         ActionLocation::Exit(id) => &statechart.node(id).exit,

@@ -41,9 +41,9 @@ fn of_system(system: &SystemRoles) -> (Statechart, Vec<Diagnostic>) {
         [role] => aseme::liveness_to_statechart(&liveness::parse(&role.liveness).0),
         roles => {
             let message = format!("the model has {} roles, each of which has a statechart", roles.len());
-            let place = roles.get(1).map_or(yase::Span::default(), |role| role.place.0);
+            let span = roles.get(1).map_or(yase::Span::default(), |role| role.position.0);
             let found =
-                Diagnostic::error("E0248", place, message).with_hint("put each role into its own file");
+                Diagnostic::error("E0248", span, message).with_hint("put each role into its own file");
             (Statechart::new(""), vec![found])
         }
     }

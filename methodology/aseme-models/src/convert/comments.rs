@@ -64,11 +64,11 @@ fn line_key(line: &Line, seen: &mut BTreeMap<String, usize>) -> (String, usize) 
 
 fn add(from: &Comments, to: &mut Comments) {
     to.above.extend(from.above.iter().cloned());
-    to.beside.clone_from(&from.beside);
+    to.trailing.clone_from(&from.trailing);
 }
 
 fn texts(comments: &Comments) -> impl Iterator<Item = String> {
-    let beside = Some(comments.beside.clone()).filter(|beside| !beside.is_empty());
+    let beside = Some(comments.trailing.clone()).filter(|beside| !beside.is_empty());
     comments.above.iter().cloned().chain(beside).collect::<Vec<_>>().into_iter()
 }
 

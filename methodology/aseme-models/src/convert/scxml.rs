@@ -35,9 +35,9 @@ pub(crate) fn write(model: &Iac) -> Result<WrittenModel, Vec<Diagnostic>> {
 fn beside_the_chart(model: &Iac, chart: &Statechart) -> Vec<Diagnostic> {
     let plain = Iac::from_statechart(chart, model.kind);
     let mut lost = Vec::new();
-    let mut add = |place: yase::expression::TextPosition, what: String| {
+    let mut add = |position: yase::expression::TextPosition, what: String| {
         let message = format!("{what}: SCXML cannot represent it");
-        lost.push(Diagnostic::warning("E0850", place.0, message));
+        lost.push(Diagnostic::warning("E0850", position.0, message));
     };
     for (node, usual) in model.nodes.iter().zip(&plain.nodes) {
         let texts = [
@@ -47,30 +47,30 @@ fn beside_the_chart(model: &Iac, chart: &Statechart) -> Vec<Diagnostic> {
             ("metadata", &node.metadata, &usual.metadata),
         ];
         for (what, text, _) in texts.into_iter().filter(|(_, text, usual)| text != usual) {
-            add(node.place, format!("the {what} of `{}`, `{text}`", node.name));
+            add(node.position, format!("the {what} of `{}`, `{text}`", node.name));
         }
         for (key, value) in frame_settings(&node.frame) {
-            add(node.place, format!("the layout of `{}`, `{key} = {value}`", node.name));
+            add(node.position, format!("the layout of `{}`, `{key} = {value}`", node.name));
         }
         if !node.variables.is_empty() {
-            add(node.place, format!("the variables of `{}`", node.name));
+            add(node.position, format!("the variables of `{}`", node.name));
         }
     }
     for (transition, usual) in model.transitions.iter().zip(&plain.transitions) {
         if transition.name != usual.name {
-            add(transition.place, format!("the name of the transition `{}`", transition.name));
+            add(transition.position, format!("the name of the transition `{}`", transition.name));
         }
         if !transition.bends.is_empty() {
-            add(transition.place, format!("the layout of `{}`", transition.name));
+            add(transition.position, format!("the layout of `{}`", transition.name));
         }
         if !transition.metadata.is_empty() {
-            add(transition.place, format!("the metadata of `{}`", transition.name));
+            add(transition.position, format!("the metadata of `{}`", transition.name));
         }
     }
     model
         .variables
         .iter()
-        .for_each(|variable| add(variable.place, format!("the variable `{}`", variable.name)));
+        .for_each(|variable| add(variable.position, format!("the variable `{}`", variable.name)));
     let model_texts = [("description", &model.description), ("metadata", &model.metadata)];
     for (what, text) in model_texts.into_iter().filter(|(_, text)| !text.is_empty()) {
         add(yase::expression::TextPosition::default(), format!("the {what} `{text}`"));
@@ -114,8 +114,8 @@ fn nearest(chart: &Statechart) -> Statechart {
         let parent = new_ids[parent.0 as usize];
         let new = plain.add(parent, made);
         new_ids.push(new);
-        let ways = outgoing.get(&id).map(Vec::as_slice).unwrap_or_default();
-        if node.kind == NodeKind::Start && !is_plain_start(ways) {
+        let transitions = outgoing.get(&id).map(Vec::as_slice).unwrap_or_default();
+        if node.kind == NodeKind::Start && !is_plain_start(transitions) {
             let name = format!("start_{}", labels[id.0 as usize].replace('.', "_"));
             let decider = plain.add(parent, Node::new(NodeKind::Basic, name));
             plain.connect(Transition::new(new, decider));
@@ -136,8 +136,8 @@ fn nearest(chart: &Statechart) -> Statechart {
     plain
 }
 
-fn is_plain_start(ways: &[&Transition]) -> bool {
-    matches!(ways, [way] if way.expression.guard.is_none() && way.expression.trigger.is_none())
+fn is_plain_start(transitions: &[&Transition]) -> bool {
+    matches!(transitions, [way] if way.expression.guard.is_none() && way.expression.trigger.is_none())
 }
 
 fn plain_node(node: &Node, name: &str) -> Node {

@@ -19,7 +19,7 @@ impl ItemDocument {
                 above.extend(Some(comment).filter(|comment| !comment.is_empty()).map(String::from));
                 continue;
             }
-            let comments = Comments { above: std::mem::take(&mut above), beside: comment.into() };
+            let comments = Comments { above: std::mem::take(&mut above), trailing: comment.into() };
             let word = SpannedText { text: blanked[content.start..content.end].into(), span: content };
             let indent = blanked[line.start..content.start].trim_start_matches('\u{feff}').chars().count();
             let indent = if starts_text(text, line, content) { 0 } else { indent };
@@ -83,11 +83,11 @@ mod tests {
         assert_eq!(findings, []);
         let item = &document.items[0];
         assert_eq!((item.word.text.as_str(), item.name.text.as_str()), ("Goal", "Win"));
-        assert_eq!(item.comments, Comments { above: vec!["# one".into()], beside: "# two".into() });
+        assert_eq!(item.comments, Comments { above: vec!["# one".into()], trailing: "# two".into() });
         assert_eq!(item.lines[0].content.text, "depender = M");
         assert_eq!(
             item.lines[0].comments,
-            Comments { above: vec!["# three".into()], beside: "# four".into() }
+            Comments { above: vec!["# three".into()], trailing: "# four".into() }
         );
         assert_eq!(document.tail, ["# five"]);
         let span = item.lines[0].content.span;

@@ -32,7 +32,7 @@ fn line(f: &mut fmt::Formatter<'_>, indent: usize, content: &str, comments: &Com
     for comment in &comments.above {
         writeln!(f, "{:indent$}{comment}", "")?;
     }
-    match comments.beside.as_str() {
+    match comments.trailing.as_str() {
         "" => writeln!(f, "{:indent$}{content}", ""),
         beside => writeln!(f, "{:indent$}{content}  {beside}", ""),
     }

@@ -246,7 +246,7 @@ impl<'a> ChartText<'a> {
         let span = Span::new(self.nodes[node].content.span.start, self.subtree_end(node));
         let mut edits = vec![without_lines(self.source, span)];
         let ends = |line: &TransitionLines| {
-            let number = self.chart.transitions.iter().position(|it| it.place.0 == line.content.span);
+            let number = self.chart.transitions.iter().position(|it| it.position.0 == line.content.span);
             number
                 .map(|number| (self.chart.transitions[number].source, self.chart.transitions[number].target))
         };
@@ -326,7 +326,7 @@ fn shifted(edits: &[TextEdit], at: usize) -> Option<usize> {
 
 fn node_lines(document: &ItemDocument, chart: &Iac) -> Vec<NodeLines> {
     let places: BTreeMap<usize, usize> =
-        chart.nodes.iter().enumerate().map(|(index, node)| (node.place.0.start, index)).collect();
+        chart.nodes.iter().enumerate().map(|(index, node)| (node.position.0.start, index)).collect();
     let mut nodes = vec![NodeLines::default(); chart.nodes.len()];
     let mut open: Vec<(usize, usize)> = Vec::new();
     for line in lines(document, "States") {
@@ -352,7 +352,7 @@ fn transition_lines(document: &ItemDocument, chart: &Iac) -> Vec<TransitionLines
     let mut found: Vec<TransitionLines> = Vec::new();
     let mut known = chart.transitions.iter().peekable();
     for line in lines(document, "Transitions") {
-        let is_next = known.peek().is_some_and(|next| next.place.0 == line.content.span);
+        let is_next = known.peek().is_some_and(|next| next.position.0 == line.content.span);
         match (transition_line(&line.content).filter(|_| is_next), found.last_mut()) {
             (Some(parts), _) => {
                 known.next();

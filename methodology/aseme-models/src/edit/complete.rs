@@ -230,7 +230,7 @@ impl CompletionCollector<'_> {
             Some(FieldKind::Choice(choices)) => self.all("value", choices.iter().copied()),
             Some(FieldKind::Links(word, _)) => {
                 let form = FormText::new(source);
-                let class = form.metamodel.classes.iter().find(|class| class.word == *word);
+                let class = form.metamodel.classes.iter().find(|class| class.header == *word);
                 let known = class.map(|class| form.references(class)).unwrap_or_default();
                 for one in known.into_values() {
                     self.add("item", reference(&one.name, one.number), *word);

@@ -54,13 +54,13 @@ impl<'a> FormText<'a> {
 
     /// The class of an item; the header of the model has none.
     pub(crate) fn class_of(&self, item: &Item) -> Option<&'static Class> {
-        self.metamodel.classes.iter().find(|class| class.word == item.word.text)
+        self.metamodel.classes.iter().find(|class| class.header == item.word.text)
     }
 
     /// The text that refers to each item of a class, by its number in the text.
     pub(crate) fn references(&self, class: &Class) -> BTreeMap<usize, Reference> {
         let mut seen: BTreeMap<String, usize> = BTreeMap::new();
-        let items = self.document.items.iter().enumerate().filter(|(_, item)| item.word.text == class.word);
+        let items = self.document.items.iter().enumerate().filter(|(_, item)| item.word.text == class.header);
         let refer = |(index, item): (usize, &Item)| {
             let name = plain(&item.name.text);
             let number = seen.entry(name.clone()).or_default();
@@ -82,12 +82,12 @@ impl<'a> FormText<'a> {
             return self.rename(index, item, class, value.unwrap_or_default());
         }
         let feature = class.features.iter().enumerate().find(|(place, feature)| {
-            feature.word == key
+            feature.key == key
                 && *place != class.title
                 && !matches!(feature.kind, FeatureKind::Opposite { .. })
         });
         let Some((_, feature)) = feature else {
-            return Err(EditRefusal::new(format!("a {} has no `{key}`", class.word)));
+            return Err(EditRefusal::new(format!("a {} has no `{key}`", class.header)));
         };
         let settings = settings(&item.lines);
         let setting = settings.iter().flatten().find(|setting| setting.key.text == key);
@@ -181,7 +181,7 @@ impl<'a> FormText<'a> {
     fn rename(&self, index: usize, item: &Item, class: &'static Class, name: &str) -> Edits {
         let name = name.trim();
         if name.is_empty() && self.metamodel.is_linked(class) {
-            return Err(EditRefusal::new(format!("a {} needs a name", class.word)));
+            return Err(EditRefusal::new(format!("a {} needs a name", class.header)));
         }
         let mut edits = vec![match item.name.text.is_empty() {
             true => insertion(item.word.span.end + 1, format!(" {}", value_text(name))),
@@ -194,7 +194,8 @@ impl<'a> FormText<'a> {
             for setting in settings(&other.lines).into_iter().flatten() {
                 let links = |feature: &&Feature| match feature.kind {
                     FeatureKind::Links { class: target, .. } => {
-                        feature.word == setting.key.text && self.metamodel.classes[target].word == class.word
+                        feature.key == setting.key.text
+                            && self.metamodel.classes[target].header == class.header
                     }
                     _ => false,
                 };
@@ -214,11 +215,11 @@ impl<'a> FormText<'a> {
     }
 
     fn add_item(&self, word: &str, name: &str) -> Edits {
-        let class = self.metamodel.classes.iter().find(|class| class.word == word);
+        let class = self.metamodel.classes.iter().find(|class| class.header == word);
         let Some(class) = class else {
             return Err(EditRefusal::new(format!(
                 "a model of the kind {} has no `{word}`",
-                self.metamodel.word
+                self.metamodel.header
             )));
         };
         let header = match name.trim() {
@@ -234,7 +235,7 @@ impl<'a> FormText<'a> {
             Some(item) => line_below(self.source, last_line(item), &format!("{ending}{header}")),
             None => insertion(
                 self.source.len(),
-                format!("{}:{ending}{ending}{header}{ending}", self.metamodel.word),
+                format!("{}:{ending}{ending}{header}{ending}", self.metamodel.header),
             ),
         }])
     }

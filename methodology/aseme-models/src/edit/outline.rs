@@ -184,10 +184,10 @@ fn chart(source: &str) -> ModelOutline {
 
 fn items(form: &FormText<'_>) -> ModelOutline {
     let classes = form.metamodel.classes.iter().map(|class| ClassOutline {
-        word: class.word,
-        title: class.features[class.title].word,
+        word: class.header,
+        title: class.features[class.title].key,
         fields: fields(class)
-            .map(|feature| FieldOutline { key: feature.word, kind: kind(form.metamodel, feature) })
+            .map(|feature| FieldOutline { key: feature.key, kind: kind(form.metamodel, feature) })
             .collect(),
     });
     let items = form.document.items.iter().enumerate().filter_map(|(index, item)| {
@@ -196,7 +196,7 @@ fn items(form: &FormText<'_>) -> ModelOutline {
         let own = known.get(&index).map(|own| reference(&own.name, own.number)).unwrap_or_default();
         let settings = settings(&item.lines);
         let values = |feature: &Feature| {
-            let setting = settings.iter().flatten().find(|setting| setting.key.text == feature.word);
+            let setting = settings.iter().flatten().find(|setting| setting.key.text == feature.key);
             let values = setting.map(|setting| match (feature.kind, setting.block) {
                 (FeatureKind::Links { .. }, _) => {
                     list(&setting.value).into_iter().map(|word| written(word.text)).collect()
@@ -204,11 +204,11 @@ fn items(form: &FormText<'_>) -> ModelOutline {
                 (_, Some(lines)) => lines.iter().map(|line| line.content.text.clone()).collect(),
                 _ => vec![plain(&setting.value.text)],
             });
-            (feature.word, values.unwrap_or_default())
+            (feature.key, values.unwrap_or_default())
         };
         Some(ItemOutline {
             item: index,
-            word: class.word,
+            word: class.header,
             name: plain(&item.name.text),
             reference: own,
             span: item.span(),
@@ -234,7 +234,7 @@ fn kind(metamodel: &Metamodel, feature: &Feature) -> FieldKind {
         FeatureKind::Formulas => FieldKind::Formulas,
         FeatureKind::Choice(choices) => FieldKind::Choice(choices.to_vec()),
         FeatureKind::Links { class, most, .. } => {
-            FieldKind::Links(metamodel.classes[class].word, most == UNLIMITED)
+            FieldKind::Links(metamodel.classes[class].header, most == UNLIMITED)
         }
         FeatureKind::Text | FeatureKind::Opposite { .. } => FieldKind::Text,
     }

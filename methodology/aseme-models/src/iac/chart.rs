@@ -135,7 +135,7 @@ impl StatechartBuilder {
         let kind = KINDS.into_iter().find(|kind| kind_word(*kind) == node.kind);
         if kind.is_none() {
             let message = format!("`{}` has the unknown type `{}`", node.name, node.kind);
-            let found = Diagnostic::error("E0817", node.place.0, message);
+            let found = Diagnostic::error("E0817", node.position.0, message);
             self.report(found.with_nearest(&node.kind, KINDS.into_iter().map(kind_word)));
         }
         let made = self.made(node, kind.unwrap_or(NodeKind::Basic), label);
@@ -182,7 +182,7 @@ impl StatechartBuilder {
         }
         let (actions, findings) = parse_actions_at(text, 0);
         self.diagnostics
-            .extend(findings.into_iter().map(|finding| Diagnostic { span: node.place.0, ..finding }));
+            .extend(findings.into_iter().map(|finding| Diagnostic { span: node.position.0, ..finding }));
         actions
     }
 
@@ -193,7 +193,7 @@ impl StatechartBuilder {
         events(text).unwrap_or_else(|| {
             let message = format!("`{text}` names no events");
             self.report(
-                Diagnostic::error("E0818", node.place.0, message)
+                Diagnostic::error("E0818", node.position.0, message)
                     .with_hint("names of events, separated by blanks"),
             );
             Vec::new()

@@ -152,7 +152,7 @@ impl Reader {
     fn variable(&mut self, item: &Item) {
         let name = self.plain(&item.name);
         let mut variable =
-            Variable { name: name.clone(), kind: String::new(), place: TextPosition(item.span()) };
+            Variable { name: name.clone(), kind: String::new(), position: TextPosition(item.span()) };
         for setting in self.settings(&item.lines) {
             match setting.key.text.as_str() {
                 "type" => variable.kind = self.plain(&setting.value),
@@ -224,8 +224,8 @@ impl Reader {
             self.named_by_label.push(self.chart.nodes.len());
         }
         let kind = if kind == "NODE" { String::new() } else { kind };
-        let place = TextPosition(content.span);
-        self.chart.nodes.push(IacNode { name: meant, kind, parent, place, ..IacNode::default() });
+        let position = TextPosition(content.span);
+        self.chart.nodes.push(IacNode { name: meant, kind, parent, position, ..IacNode::default() });
         Some(self.chart.nodes.len() - 1)
     }
 
@@ -332,7 +332,7 @@ impl Reader {
         let (source, target) = (self.end(paths, &source), self.end(paths, &target));
         let mut transition = IacTransition {
             te: without_null(&self.plain(&te)),
-            place: TextPosition(content.span),
+            position: TextPosition(content.span),
             te_place: TextPosition(if te.text.is_empty() { content.span } else { te.span }),
             ..IacTransition::default()
         };

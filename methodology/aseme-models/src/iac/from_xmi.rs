@@ -34,7 +34,7 @@ fn flatten(chart: &mut Iac) -> Option<Diagnostic> {
         let level = parent.map_or(1, |parent| levels[parent] + 1);
         if level > MAX_LEVELS {
             chart.nodes[index].parent = parent.and_then(|parent| chart.nodes[parent].parent);
-            found.get_or_insert_with(|| too_deep(chart.nodes[index].place.0));
+            found.get_or_insert_with(|| too_deep(chart.nodes[index].position.0));
         }
         levels.push(level.min(MAX_LEVELS));
     }
@@ -154,7 +154,7 @@ impl Reader {
             parent,
             actions: text("actions"),
             metadata: text("metadata"),
-            place: TextPosition(xmi::tag(element)),
+            position: TextPosition(xmi::tag(element)),
             ..IacNode::default()
         });
         index
@@ -222,7 +222,7 @@ impl Reader {
                 let node = &mut self.chart.nodes[last];
                 node.parent = None;
                 let message = format!("`{}` lies in itself", node.name);
-                let span = node.place.0;
+                let span = node.position.0;
                 self.report(Diagnostic::error("E0812", span, message).with_hint("one node has no parent"));
             }
         }
@@ -232,8 +232,8 @@ impl Reader {
         self.known(element, "variable", &VARIABLE);
         let text = |name| element.attribute(name).unwrap_or_default().to_owned();
         self.variables.insert(element.id().get_usize(), self.chart.variables.len());
-        let place = TextPosition(xmi::tag(element));
-        self.chart.variables.push(Variable { name: text("name"), kind: text("type"), place });
+        let position = TextPosition(xmi::tag(element));
+        self.chart.variables.push(Variable { name: text("name"), kind: text("type"), position });
     }
 
     pub(crate) fn transition(&mut self, element: Node<'_, '_>) {
@@ -249,7 +249,7 @@ impl Reader {
             source,
             target,
             metadata: text("metadata"),
-            place: TextPosition(xmi::tag(element)),
+            position: TextPosition(xmi::tag(element)),
             te_place: TextPosition(te_place),
             ..IacTransition::default()
         });

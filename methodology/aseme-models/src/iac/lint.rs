@@ -28,11 +28,11 @@ fn roots(chart: &Iac, file: Span) -> Vec<Diagnostic> {
     let mut found = Vec::new();
     if root.kind != "OR" {
         let message = format!("the root is of the type `{}`, not OR", root.kind);
-        found.push(Diagnostic::warning("E0814", root.place.0, message));
+        found.push(Diagnostic::warning("E0814", root.position.0, message));
     }
     for other in roots {
         let message = format!("`{}` is a second root beside `{}`", other.name, root.name);
-        found.push(Diagnostic::error("E0811", other.place.0, message).with_hint("a chart has one root"));
+        found.push(Diagnostic::error("E0811", other.position.0, message).with_hint("a chart has one root"));
     }
     found
 }
@@ -65,7 +65,7 @@ fn labels(chart: &Iac) -> Vec<Diagnostic> {
     };
     wrong
         .into_iter()
-        .map(|(node, usual)| Diagnostic::warning("E0813", node.place.0, message(&node.label, usual)))
+        .map(|(node, usual)| Diagnostic::warning("E0813", node.position.0, message(&node.label, usual)))
         .collect()
 }
 
@@ -78,7 +78,9 @@ fn types(chart: &Iac) -> Vec<Diagnostic> {
             kind => format!("`{kind}` is not a type of nodes"),
         };
         let hint = format!("types are {}", TYPES.join(", "));
-        Diagnostic::warning("E0814", node.place.0, message).with_hint(hint).with_nearest(&node.kind, known())
+        Diagnostic::warning("E0814", node.position.0, message)
+            .with_hint(hint)
+            .with_nearest(&node.kind, known())
     };
     unknown.map(finding).collect()
 }
@@ -89,7 +91,7 @@ fn places(chart: &Iac) -> Vec<Diagnostic> {
     let mut report = |span, message: String| found.push(Diagnostic::warning("E0816", span, message));
     for (node, children) in chart.nodes.iter().zip(chart.children()) {
         let count = |kind: &str| children.iter().filter(|&&child| chart.nodes[child].kind == kind).count();
-        let (name, span) = (&node.name, node.place.0);
+        let (name, span) = (&node.name, node.position.0);
         match node.kind.as_str() {
             "OR" if children.is_empty() => report(span, format!("`{name}` is an OR without children")),
             "OR" => {
@@ -103,7 +105,7 @@ fn places(chart: &Iac) -> Vec<Diagnostic> {
             "AND" => {
                 for &child in children.iter().filter(|&&child| chart.nodes[child].kind != "OR") {
                     let child = &chart.nodes[child];
-                    report(child.place.0, format!("`{}` is a child of an AND, but no OR", child.name));
+                    report(child.position.0, format!("`{}` is a child of an AND, but no OR", child.name));
                 }
             }
             kind if !children.is_empty() => {
@@ -121,10 +123,10 @@ fn ends(chart: &Iac) -> Vec<Diagnostic> {
     for transition in &chart.transitions {
         let (source, target) = (&chart.nodes[transition.source], &chart.nodes[transition.target]);
         if target.kind == "START" {
-            found.push(Diagnostic::warning("E0816", transition.place.0, "a transition leads to a START"));
+            found.push(Diagnostic::warning("E0816", transition.position.0, "a transition leads to a START"));
         }
         if source.kind == "END" {
-            found.push(Diagnostic::warning("E0816", transition.place.0, "a transition leaves an END"));
+            found.push(Diagnostic::warning("E0816", transition.position.0, "a transition leaves an END"));
         }
     }
     found

@@ -92,7 +92,7 @@ fn transitions_in_order<'a, 'input>(
         if !listed_nodes.contains_key(id) {
             let node = &reader.chart.nodes[*index];
             let message = format!("the model does not list the node `{}`", node.name);
-            lost.push(Diagnostic::warning("E0812", node.place.0, message));
+            lost.push(Diagnostic::warning("E0812", node.position.0, message));
         }
     }
     for element in

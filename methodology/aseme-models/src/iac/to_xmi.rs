@@ -38,7 +38,7 @@ impl Iac {
             let labels = self.labels();
             let unusual = self.nodes.iter().zip(&labels).filter(|(node, label)| node.label != **label);
             unusual.for_each(|(node, _)| {
-                lost.add(node.place, format!("the label `{}` of `{}`", node.label, node.name))
+                lost.add(node.position, format!("the label `{}` of `{}`", node.label, node.name))
             });
         }
         self.transitions.iter().for_each(|transition| lost.transition(self, transition));
@@ -65,9 +65,9 @@ struct LossReport {
 }
 
 impl LossReport {
-    fn add(&mut self, place: yase::expression::TextPosition, what: impl std::fmt::Display) {
+    fn add(&mut self, position: yase::expression::TextPosition, what: impl std::fmt::Display) {
         let message = format!("{what}: {} cannot represent it", self.dialect.name());
-        self.found.push(Diagnostic::warning("E0850", place.0, message));
+        self.found.push(Diagnostic::warning("E0850", position.0, message));
     }
 
     fn model(&mut self, chart: &Iac) {
@@ -87,7 +87,10 @@ impl LossReport {
             self.add(start, format!("the constant `{} = {value}`", constant.name));
         }
         if self.dialect == Dialect::MultiRoot {
-            chart.variables.iter().for_each(|it| self.add(it.place, format!("the variable `{}`", it.name)));
+            chart
+                .variables
+                .iter()
+                .for_each(|it| self.add(it.position, format!("the variable `{}`", it.name)));
         }
         if chart.kind == super::ChartKind::Inter {
             self.add(start, "the kind: a chart of a protocol");
@@ -109,13 +112,13 @@ impl LossReport {
             texts.extend([("actions", node.actions.clone()), ("metadata", node.metadata.clone())]);
         }
         for (what, text) in texts.into_iter().filter(|(_, text)| !text.is_empty()) {
-            self.add(node.place, format!("the {what} of `{}`, `{text}`", node.name));
+            self.add(node.position, format!("the {what} of `{}`, `{text}`", node.name));
         }
         for (key, value) in frame_settings(&node.frame) {
-            self.add(node.place, format!("the layout of `{}`, `{key} = {value}`", node.name));
+            self.add(node.position, format!("the layout of `{}`, `{key} = {value}`", node.name));
         }
         if let Some(activity) = &refinement.activity {
-            self.add(node.place, format!("the activity of `{}`, `{activity}`", node.name));
+            self.add(node.position, format!("the activity of `{}`, `{activity}`", node.name));
         }
     }
 
@@ -132,7 +135,7 @@ impl LossReport {
             ("metadata", !transition.metadata.is_empty() && self.dialect != Dialect::Nested2018),
         ];
         for (what, _) in said.into_iter().filter(|(_, said)| *said) {
-            self.add(transition.place, format!("the {what} of `{}`", name()));
+            self.add(transition.position, format!("the {what} of `{}`", name()));
         }
     }
 }
@@ -279,21 +282,21 @@ fn variable_paths(node: &IacNode) -> String {
 fn unwritable(chart: &Iac) -> Vec<Diagnostic> {
     let nodes = chart.nodes.iter().flat_map(|node| {
         let texts = [&node.name, &node.label, &node.kind, &node.functionality, &node.actions, &node.metadata];
-        texts.map(|text| (node.place, text))
+        texts.map(|text| (node.position, text))
     });
     let transitions = chart
         .transitions
         .iter()
-        .flat_map(|it| [(it.te_place, &it.te), (it.place, &it.name), (it.place, &it.metadata)]);
-    let variables = chart.variables.iter().flat_map(|it| [(it.place, &it.name), (it.place, &it.kind)]);
+        .flat_map(|it| [(it.te_place, &it.te), (it.position, &it.name), (it.position, &it.metadata)]);
+    let variables = chart.variables.iter().flat_map(|it| [(it.position, &it.name), (it.position, &it.kind)]);
     let model = [&chart.name, &chart.description, &chart.metadata]
         .map(|text| (yase::expression::TextPosition::default(), text));
     let texts = nodes.chain(transitions).chain(variables).chain(model);
     let wrong = texts.filter(|(_, text)| !fits_xml(text));
     wrong
-        .map(|(place, text)| {
+        .map(|(position, text)| {
             let message = format!("{text:?} has a character that XML does not have");
-            Diagnostic::error("E0810", place.0, message).with_hint("remove the character")
+            Diagnostic::error("E0810", position.0, message).with_hint("remove the character")
         })
         .collect()
 }

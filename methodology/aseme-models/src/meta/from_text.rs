@@ -46,12 +46,12 @@ impl Reader<'_> {
         let mut sorted: Vec<Vec<&Item>> = self.metamodel.classes.iter().map(|_| Vec::new()).collect();
         for (index, item) in document.items.iter().enumerate() {
             let word = item.word.text.as_str();
-            match self.metamodel.classes.iter().position(|class| class.word == word) {
+            match self.metamodel.classes.iter().position(|class| class.header == word) {
                 Some(class) => sorted[class].push(item),
-                None if index == 0 && word == self.metamodel.word => self.kind(item),
+                None if index == 0 && word == self.metamodel.header => self.kind(item),
                 None => {
-                    let message = format!("a model of the kind {} has no `{word}`", self.metamodel.word);
-                    let words = self.metamodel.classes.iter().map(|class| class.word);
+                    let message = format!("a model of the kind {} has no `{word}`", self.metamodel.header);
+                    let words = self.metamodel.classes.iter().map(|class| class.header);
                     let hint = format!("headers are {}", words.clone().collect::<Vec<_>>().join(", "));
                     let found = Diagnostic::error("E0261", item.word.span, message).with_hint(hint);
                     self.report(found.with_nearest(word, words));
@@ -80,7 +80,7 @@ impl Reader<'_> {
             let number = seen.entry(name.clone()).or_default();
             *number += 1;
             if *number == 2 && !name.is_empty() && self.metamodel.is_linked(class) {
-                let message = format!("another {} has the name `{name}`", class.word);
+                let message = format!("another {} has the name `{name}`", class.header);
                 let hint = format!("give it another name, or refer to it as `{name}[2]`");
                 self.report(Diagnostic::warning("E0263", item.span(), message).with_hint(hint));
             }
@@ -102,10 +102,10 @@ impl Reader<'_> {
 
     fn object(&mut self, class: &Class, item: &Item) -> Object {
         let mut object = class.object();
-        object.place = TextPosition(item.span());
+        object.position = TextPosition(item.span());
         object.values[class.title] =
             FeatureValue::Text(unquoted(&item.name.text).unwrap_or_else(|| item.name.text.clone()));
-        object.places[class.title] = TextPosition(item.name.span);
+        object.value_positions[class.title] = TextPosition(item.name.span);
         let mut said = vec![false; class.features.len()];
         for setting in settings(&item.lines) {
             match setting {
@@ -126,10 +126,10 @@ impl Reader<'_> {
     fn setting(&mut self, class: &Class, setting: &KeyValue<'_>, object: &mut Object, said: &mut [bool]) {
         let key = &setting.key;
         let known = |feature: &Feature| {
-            feature.word == key.text && !matches!(feature.kind, FeatureKind::Opposite { .. })
+            feature.key == key.text && !matches!(feature.kind, FeatureKind::Opposite { .. })
         };
         let Some(index) = class.features.iter().position(known).filter(|&index| index != class.title) else {
-            let message = format!("a {} has no `{}`", class.word, key.text);
+            let message = format!("a {} has no `{}`", class.header, key.text);
             let hint = format!("keys are {}", keys(class).collect::<Vec<_>>().join(", "));
             let found = Diagnostic::error("E0266", key.span, message).with_hint(hint);
             return self.report(found.with_nearest(&key.text, keys(class)));
@@ -139,7 +139,7 @@ impl Reader<'_> {
             self.report(Diagnostic::error("E0267", key.span, message).with_hint("keep one of the two"));
             return;
         }
-        object.places[index] = TextPosition(setting.block.map_or(setting.value.span, block_span));
+        object.value_positions[index] = TextPosition(setting.block.map_or(setting.value.span, block_span));
         let kind = class.features[index].kind;
         if setting.block.is_some() && !matches!(kind, FeatureKind::Formulas) {
             let hint = format!("write `{} = value`", key.text);
@@ -181,7 +181,7 @@ impl Reader<'_> {
         let titles = &self.titles[class];
         let found = Reference::parse(&word.text).and_then(|reference| titles.get(&reference).copied());
         if found.is_none() {
-            let message = format!("there is no {} `{}`", self.metamodel.classes[class].word, word.text);
+            let message = format!("there is no {} `{}`", self.metamodel.classes[class].header, word.text);
             let names = titles.keys().map(|reference| reference.name.as_str());
             let found = Diagnostic::error("E0269", word.span, message).with_suggestion(
                 &self.suggestions,
@@ -198,7 +198,7 @@ impl Reader<'_> {
 fn keys(class: &Class) -> impl Iterator<Item = &'static str> {
     let features = class.features.iter().enumerate().filter(|(index, _)| *index != class.title);
     let said = features.filter(|(_, feature)| !matches!(feature.kind, FeatureKind::Opposite { .. }));
-    said.map(|(_, feature)| feature.word)
+    said.map(|(_, feature)| feature.key)
 }
 
 fn block_text(lines: &[Line]) -> String {

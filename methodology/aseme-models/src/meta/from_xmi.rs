@@ -57,7 +57,7 @@ impl Reader<'_> {
     fn namespace(&mut self, root: Node<'_, '_>) {
         let known = root.tag_name().namespace().filter(|uri| !self.metamodel.namespaces.contains(uri));
         if let Some(uri) = known {
-            let message = format!("`{uri}` is not the namespace of a {}", self.metamodel.word);
+            let message = format!("`{uri}` is not the namespace of a {}", self.metamodel.header);
             let hint = format!("it is `{}`", self.metamodel.namespaces.first().copied().unwrap_or_default());
             self.report(Diagnostic::warning("E0802", xmi::tag(root), message).with_hint(hint));
         }
@@ -96,20 +96,20 @@ impl Reader<'_> {
         let Some(&(class, index)) = self.objects.get(&element.id().get_usize()) else { return };
         let metaclass = &self.metamodel.classes[class];
         let mut object = metaclass.object();
-        object.place = TextPosition(xmi::tag(element));
+        object.position = TextPosition(xmi::tag(element));
         self.subclass(metaclass, element, &mut object);
         for attribute in xmi::features(element) {
             match feature_named(metaclass, attribute.name()) {
                 Some(feature) => self.feature(metaclass, feature, &attribute, &mut object),
                 None => {
                     let names: Vec<&str> = metaclass.features.iter().map(|feature| feature.name).collect();
-                    self.unknown_feature(metaclass.word, &attribute, &names);
+                    self.unknown_feature(metaclass.header, &attribute, &names);
                 }
             }
         }
         for child in xmi::elements(element) {
             let message =
-                format!("a {} has no elements such as `{}`", metaclass.word, child.tag_name().name());
+                format!("a {} has no elements such as `{}`", metaclass.header, child.tag_name().name());
             self.report(Diagnostic::error("E0803", xmi::tag(child), message));
         }
         self.instance.objects[class][index] = object;
@@ -121,9 +121,9 @@ impl Reader<'_> {
         let name = attribute.value().rsplit(':').next().unwrap_or_default();
         match class.subclasses.iter().find(|(subclass, ..)| *subclass == name) {
             Some((_, feature, choice)) => object.values[*feature] = FeatureValue::Choice(*choice),
-            None if name == class.word => {}
+            None if name == class.header => {}
             None => {
-                let message = format!("`{name}` is not a kind of {}", class.word);
+                let message = format!("`{name}` is not a kind of {}", class.header);
                 let names = class.subclasses.iter().map(|(name, ..)| *name);
                 let found = Diagnostic::error("E0805", xmi::value_span(&attribute), message);
                 self.report(found.with_nearest(name, names));
@@ -133,7 +133,7 @@ impl Reader<'_> {
 
     fn feature(&mut self, class: &Class, index: usize, attribute: &Attribute<'_, '_>, object: &mut Object) {
         let (value, span) = (attribute.value(), xmi::value_span(attribute));
-        object.places[index] = TextPosition(span);
+        object.value_positions[index] = TextPosition(span);
         object.values[index] = match class.features[index].kind {
             FeatureKind::Text | FeatureKind::Formulas => FeatureValue::Text(value.into()),
             FeatureKind::Choice(choices) => FeatureValue::Choice(self.choice(choices, value, span)),
@@ -173,14 +173,14 @@ impl Reader<'_> {
         let fault = match found {
             Some(Some((found, index))) if found == class => return Some(index),
             Some(Some((found, _))) => {
-                format!("`{word}` is a {}, not a {}", self.metamodel.classes[found].word, wanted.word)
+                format!("`{word}` is a {}, not a {}", self.metamodel.classes[found].header, wanted.header)
             }
-            Some(None) => format!("`{word}` is not a {}", wanted.word),
+            Some(None) => format!("`{word}` is not a {}", wanted.header),
             None => format!("there is no `{word}`"),
         };
         let count = self.instance.of(class).len();
         let hint = match count {
-            0 => format!("the model has no {}", wanted.word),
+            0 => format!("the model has no {}", wanted.header),
             _ => format!("the {} are `//@{}.0` to `//@{0}.{}`", wanted.feature, wanted.feature, count - 1),
         };
         self.report(Diagnostic::error("E0807", span, fault).with_hint(hint));
@@ -204,7 +204,7 @@ impl Reader<'_> {
         }
         let mut made = metaclass.object();
         made.values[metaclass.title] = FeatureValue::Text(value.into());
-        made.place = TextPosition(span);
+        made.position = TextPosition(span);
         self.instance.objects[class].push(made);
         Some(self.instance.of(class).len() - 1)
     }
@@ -302,7 +302,7 @@ impl Reader<'_> {
             if objects.len() < class.least {
                 let message = format!(
                     "a {} has at least {} {}, this one {}",
-                    self.metamodel.word,
+                    self.metamodel.header,
                     class.least,
                     class.feature,
                     objects.len()
@@ -317,11 +317,11 @@ impl Reader<'_> {
                 if object.links(index).len() < least {
                     let message = format!(
                         "the {} `{}` needs {least} `{}` at least",
-                        class.word,
+                        class.header,
                         object.text(class.title),
                         feature.name
                     );
-                    found.push(Diagnostic::warning("E0809", object.place.0, message));
+                    found.push(Diagnostic::warning("E0809", object.position.0, message));
                 }
             }
         }

@@ -10,7 +10,7 @@ use aseme::text;
 pub(crate) fn to_text(metamodel: &Metamodel, instance: &ModelInstance) -> ItemDocument {
     let titles: Vec<Vec<String>> =
         (0..metamodel.classes.len()).map(|class| references(metamodel, instance, class)).collect();
-    let mut items = vec![Item::new(metamodel.word, String::new())];
+    let mut items = vec![Item::new(metamodel.header, String::new())];
     for (class, objects) in metamodel.classes.iter().zip(&instance.objects) {
         items.extend(objects.iter().map(|object| item(class, object, &titles)));
     }
@@ -31,25 +31,25 @@ fn references(metamodel: &Metamodel, instance: &ModelInstance, class: usize) -> 
 
 fn item(class: &Class, object: &Object, titles: &[Vec<String>]) -> Item {
     let title = object.text(class.title);
-    let mut item = Item::new(class.word, if title.is_empty() { title } else { value_text(&title) });
+    let mut item = Item::new(class.header, if title.is_empty() { title } else { value_text(&title) });
     for (index, feature) in class.features.iter().enumerate().filter(|(index, _)| *index != class.title) {
         match (feature.kind, &object.values[index]) {
             (FeatureKind::Formulas, FeatureValue::Text(text)) if is_block(text) => {
-                item.line(2, format!("{}:", feature.word));
+                item.line(2, format!("{}:", feature.key));
                 text.lines().for_each(|line| item.line(4, line.into()));
             }
             (FeatureKind::Formulas, FeatureValue::Text(text)) if !text.is_empty() => {
-                item.set(feature.word, &value_text(text))
+                item.set(feature.key, &value_text(text))
             }
             (FeatureKind::Text, FeatureValue::Text(text)) if !text.is_empty() => {
-                item.set(feature.word, &value_text(text))
+                item.set(feature.key, &value_text(text))
             }
             (FeatureKind::Choice(choices), FeatureValue::Choice(choice)) if *choice > 0 => {
-                item.set(feature.word, choices.get(*choice).copied().unwrap_or_default());
+                item.set(feature.key, choices.get(*choice).copied().unwrap_or_default());
             }
             (FeatureKind::Links { class, .. }, FeatureValue::Links(links)) if !links.is_empty() => {
                 let words = links.iter().filter_map(|&link| titles[class].get(link).map(String::as_str));
-                item.set(feature.word, &words.collect::<Vec<_>>().join(", "));
+                item.set(feature.key, &words.collect::<Vec<_>>().join(", "));
             }
             _ => {}
         }

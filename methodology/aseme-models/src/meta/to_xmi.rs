@@ -63,10 +63,11 @@ fn unwritable(metamodel: &Metamodel, instance: &ModelInstance) -> Vec<Diagnostic
                 if matches!(value, FeatureValue::Text(text) if !fits_xml(text)) {
                     let message = format!(
                         "the `{}` of a {} has a character that XML does not have",
-                        feature.word, class.word
+                        feature.key, class.header
                     );
                     refused.push(
-                        Diagnostic::error("E0810", object.place.0, message).with_hint("remove the character"),
+                        Diagnostic::error("E0810", object.position.0, message)
+                            .with_hint("remove the character"),
                     );
                 }
             }

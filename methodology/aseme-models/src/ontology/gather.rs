@@ -36,13 +36,13 @@ impl<'a> Gatherer<'a> {
 
     pub(crate) fn variable(&mut self, variable: &Variable) {
         match parts(&variable.kind) {
-            Some((topic, kind, message)) => self.message(message, Some((topic, kind)), variable.place.0),
+            Some((topic, kind, message)) => self.message(message, Some((topic, kind)), variable.position.0),
             None => {
                 let (name, kind) = (&variable.name, &variable.kind);
                 let text = format!("the variable `{name}` has the type `{kind}`, which is not a message");
                 let hint =
                     "message types are topic.State.Message, topic.Signal.Message or topic.Data.Message";
-                self.found.push(Diagnostic::warning("E0880", variable.place.0, text).with_hint(hint));
+                self.found.push(Diagnostic::warning("E0880", variable.position.0, text).with_hint(hint));
             }
         }
     }
@@ -163,7 +163,7 @@ impl<'a> Gatherer<'a> {
         };
         let Some(message) = names.get(at) else { return };
         let topic = kept.map(|index| (names[index - 1], names[index]));
-        self.message(message, topic, path.place.0);
+        self.message(message, topic, path.position.0);
         let Some(known) = self.ontology.messages.iter_mut().find(|known| known.name == *message) else {
             return;
         };
@@ -171,7 +171,7 @@ impl<'a> Gatherer<'a> {
     }
 
     /// Records a message, perhaps with its topic.
-    fn message(&mut self, name: &str, topic: Option<(&str, &str)>, place: Span) {
+    fn message(&mut self, name: &str, topic: Option<(&str, &str)>, span: Span) {
         let messages = &mut self.ontology.messages;
         let index = messages.iter().position(|known| known.name == name).unwrap_or_else(|| {
             messages.push(OntologyMessage { name: name.to_owned(), topics: Vec::new(), fields: Vec::new() });
@@ -187,7 +187,7 @@ impl<'a> Gatherer<'a> {
                 "`{name}` has the retention `{kind}` on `{topic}` here, and `{}` elsewhere",
                 known.kind
             );
-            self.found.push(Diagnostic::warning("E0884", place, text));
+            self.found.push(Diagnostic::warning("E0884", span, text));
         }
         topics.push(OntologyTopic { name: topic.to_owned(), kind: kind.to_owned() });
     }

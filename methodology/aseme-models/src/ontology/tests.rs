@@ -17,7 +17,7 @@ fn gathered(transitions: &str, variables: &[Variable]) -> (Ontology, Vec<String>
 }
 
 fn variable(name: &str, kind: &str) -> Variable {
-    Variable { name: name.into(), kind: kind.into(), place: TextPosition(Span::new(3, 7)) }
+    Variable { name: name.into(), kind: kind.into(), position: TextPosition(Span::new(3, 7)) }
 }
 
 #[test]

@@ -32,8 +32,8 @@ struct ChartTransfer<'a> {
 }
 
 impl ChartTransfer<'_> {
-    fn report_lost(&mut self, place: Span, what: String) {
-        let found = Diagnostic::warning("E0852", place, what);
+    fn report_lost(&mut self, span: Span, what: String) {
+        let found = Diagnostic::warning("E0852", span, what);
         self.lost.push(found.with_hint("add it to the newer model if it is still valid"));
     }
 
@@ -60,7 +60,7 @@ impl ChartTransfer<'_> {
                 label: old.label.clone(),
                 kind: old.kind.clone(),
                 parent: old.parent,
-                place: old.place,
+                position: old.position,
                 ..IacNode::default()
             };
             if *old == plain {
@@ -70,7 +70,7 @@ impl ChartTransfer<'_> {
             match self.pairs.later(id).filter(|new| (new.0 as usize) < self.newer.nodes.len()) {
                 Some(new) => self.state(old, new.0 as usize, &before.path(id)),
                 None => self.report_lost(
-                    old.place.0,
+                    old.position.0,
                     format!("`{}` was removed, with: {}", before.path(id), state_content(old, self.older)),
                 ),
             }
@@ -117,7 +117,7 @@ impl ChartTransfer<'_> {
             ));
         }
         for text in differing {
-            self.report_lost(old.place.0, format!("the newer chart differs for `{path}` from `{text}`"));
+            self.report_lost(old.position.0, format!("the newer chart differs for `{path}` from `{text}`"));
         }
     }
 
@@ -153,7 +153,7 @@ impl ChartTransfer<'_> {
                 )
             };
             let Some(place) = place else {
-                self.report_lost(old.place.0, format!("the transition was removed: `{}`", arrow()));
+                self.report_lost(old.position.0, format!("the transition was removed: `{}`", arrow()));
                 continue;
             };
             let new = &mut self.newer.transitions[place];
@@ -173,7 +173,7 @@ impl ChartTransfer<'_> {
             }
             if differs {
                 let text = format!("the newer chart differs from `{}`", arrow());
-                self.report_lost(old.place.0, text);
+                self.report_lost(old.position.0, text);
             }
         }
     }

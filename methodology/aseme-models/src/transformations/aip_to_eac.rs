@@ -24,14 +24,14 @@ pub fn aip_to_eac(aip: &Aip) -> (Vec<Iac>, Vec<Diagnostic>) {
 fn eac(aip: &Aip, protocol: &Protocol, diagnostics: &mut Vec<Diagnostic>) -> Iac {
     let participants: Vec<&Participant> =
         protocol.participants.iter().filter_map(|&index| aip.participants.get(index)).collect();
-    let (formulas, places) = protocol_formulas(aip, protocol);
+    let (formulas, spans) = protocol_formulas(aip, protocol);
     let (formulas, findings) = liveness::parse(&formulas);
     let (chart, more) = transform::liveness_to_statechart(&formulas);
     let placed = |finding: Diagnostic| {
-        let place = places
+        let place = spans
             .iter()
             .find(|(end, _)| finding.span.start < *end)
-            .map_or(protocol.place.0, |(_, span)| *span);
+            .map_or(protocol.position.0, |(_, span)| *span);
         Diagnostic { span: place, ..finding }
     };
     diagnostics.extend(findings.into_iter().chain(more).map(placed));
@@ -47,18 +47,18 @@ fn eac(aip: &Aip, protocol: &Protocol, diagnostics: &mut Vec<Diagnostic>) -> Iac
 
 /// Gives nodes and transitions the spans of the formulas that they are made from.
 fn place(eac: &mut Iac, protocol: &Protocol, parts: &[&Participant]) {
-    let mut places = vec![protocol.place; eac.nodes.len()];
+    let mut positions = vec![protocol.position; eac.nodes.len()];
     let tops = participants(eac);
     for (index, node) in eac.nodes.iter().enumerate() {
         let part = if tops.contains(&index) { part_named(parts, &node.name) } else { None };
-        let around = node.parent.and_then(|parent| places.get(parent).copied());
-        places[index] = part.map(|part| part.liveness_place).or(around).unwrap_or(protocol.place);
+        let around = node.parent.and_then(|parent| positions.get(parent).copied());
+        positions[index] = part.map(|part| part.liveness_place).or(around).unwrap_or(protocol.position);
     }
-    for (node, place) in eac.nodes.iter_mut().zip(&places) {
-        node.place = *place;
+    for (node, position) in eac.nodes.iter_mut().zip(&positions) {
+        node.position = *position;
     }
     for transition in &mut eac.transitions {
-        transition.place = places[transition.target];
+        transition.position = positions[transition.target];
     }
 }
 
@@ -73,13 +73,13 @@ pub fn protocol_formulas(aip: &Aip, protocol: &Protocol) -> (String, Vec<(usize,
         protocol.participants.iter().filter_map(|&index| aip.participants.get(index)).collect();
     let names: Vec<String> = participants.iter().map(|participant| formula_name(&participant.name)).collect();
     let mut formulas = format!("{}={}\n", formula_name(&protocol.name), names.join("||"));
-    let mut places: Vec<(usize, Span)> = vec![(formulas.len(), protocol.place.0)];
+    let mut spans: Vec<(usize, Span)> = vec![(formulas.len(), protocol.position.0)];
     for participant in participants.iter().filter(|participant| !participant.liveness.trim().is_empty()) {
         formulas.push_str(&participant_formula(&participant.name, &participant.liveness));
         formulas.push('\n');
-        places.push((formulas.len(), participant.liveness_place.0));
+        spans.push((formulas.len(), participant.liveness_place.0));
     }
-    (formulas, places)
+    (formulas, spans)
 }
 
 /// Rules and outcomes that are conditions in brackets, possibly with words between; `None` if they
@@ -104,7 +104,7 @@ fn exits(eac: &mut Iac, participant: &Participant) -> Vec<Diagnostic> {
             if !closed || findings.iter().any(Diagnostic::is_error) {
                 let message = format!("`[{inner}` of `{}` is not a condition", participant.name);
                 let hint = "write all conditions in brackets, as on a transition, or all in prose";
-                found.push(Diagnostic::error("E0838", participant.place.0, message).with_hint(hint));
+                found.push(Diagnostic::error("E0838", participant.position.0, message).with_hint(hint));
             }
         }
     }
@@ -131,7 +131,7 @@ fn exits(eac: &mut Iac, participant: &Participant) -> Vec<Diagnostic> {
             source: node,
             target,
             te: format!("[{outcome}]"),
-            place: participant.place,
+            position: participant.position,
             ..IacTransition::default()
         });
     }

@@ -54,7 +54,7 @@ impl SystemRoles {
         self.activities.push(RoleActivity {
             name: name.into(),
             functionality: Some(0),
-            place: TextPosition::default(),
+            position: TextPosition::default(),
         });
         self.activities.len() - 1
     }
@@ -66,7 +66,7 @@ impl SystemRoles {
     /// There is no role, or more than one (E0247, E0248), or the formulas have errors.
     pub fn to_role(&self) -> Result<(String, Vec<Diagnostic>), Vec<Diagnostic>> {
         let [role] = self.roles.as_slice() else {
-            let second = self.roles.get(1).map_or(Span::default(), |role| role.place.0);
+            let second = self.roles.get(1).map_or(Span::default(), |role| role.position.0);
             let found = match self.roles.len() {
                 0 => Diagnostic::error("E0247", second, "the model has no role"),
                 count => Diagnostic::error("E0248", second, format!("the model has {count} roles"))
@@ -76,8 +76,8 @@ impl SystemRoles {
         };
         let (formulas, findings) = liveness::parse(&role.liveness);
         if findings.iter().any(Diagnostic::is_error) {
-            let place = role.liveness_place.0;
-            return Err(findings.into_iter().map(|finding| Diagnostic { span: place, ..finding }).collect());
+            let span = role.liveness_place.0;
+            return Err(findings.into_iter().map(|finding| Diagnostic { span, ..finding }).collect());
         }
         let first = formulas.formulas().first().map_or("", |formula| formula.name.as_str());
         let name = if role.name.trim().is_empty() { first } else { role.name.as_str() };
@@ -88,7 +88,7 @@ impl SystemRoles {
         if again.srm().role != role.name {
             let message =
                 format!("the name of the role, `{}`: the text of a role cannot represent it", role.name);
-            lost.push(Diagnostic::warning("E0850", role.place.0, message));
+            lost.push(Diagnostic::warning("E0850", role.position.0, message));
         }
         Ok((text, lost))
     }
@@ -96,31 +96,31 @@ impl SystemRoles {
     /// Parts of the role that a derived model lacks.
     fn lost_to(&self, derived: &SystemRoles) -> Vec<Diagnostic> {
         let mut lost = Vec::new();
-        let mut add = |place: TextPosition, what: String| {
+        let mut add = |position: TextPosition, what: String| {
             let message = format!("{what}: the text of a role cannot represent it");
-            lost.push(Diagnostic::warning("E0850", place.0, message));
+            lost.push(Diagnostic::warning("E0850", position.0, message));
         };
         for it in self
             .functionalities
             .iter()
-            .filter(|it| **it != Functionality { place: it.place, ..Functionality::default() })
+            .filter(|it| **it != Functionality { position: it.position, ..Functionality::default() })
         {
-            add(it.place, format!("the functionality `{}`", it.description));
+            add(it.position, format!("the functionality `{}`", it.description));
         }
         for it in &self.activities {
             if !derived.activities.iter().any(|activity| activity.name == it.name) {
-                add(it.place, format!("the activity `{}`, which no formula names", it.name));
+                add(it.position, format!("the activity `{}`, which no formula names", it.name));
             }
         }
         for it in &self.capabilities {
             match derived.capabilities.iter().find(|capability| capability.name == it.name) {
-                None => add(it.place, format!("the capability `{}`, which no formula refines", it.name)),
+                None => add(it.position, format!("the capability `{}`, which no formula refines", it.name)),
                 Some(_) if !it.description.is_empty() => {
-                    add(it.place, format!("the description of `{}`", it.name))
+                    add(it.position, format!("the description of `{}`", it.name))
                 }
                 Some(other) if self.names(&it.activities) != derived.names(&other.activities) => {
                     add(
-                        it.place,
+                        it.position,
                         format!("the activities of `{}`, which differ from those of its formula", it.name),
                     );
                 }

@@ -150,7 +150,7 @@ impl ChartMerge<'_> {
             self.iac.name, self.eac.name
         );
         let hint = "copy the formula of the participant";
-        let span = self.iac.nodes[place].place.0;
+        let span = self.iac.nodes[place].position.0;
         self.diagnostics.push(Diagnostic::error("E0835", span, message).with_hint(hint));
     }
 
@@ -207,7 +207,7 @@ impl ChartMerge<'_> {
         let (part, role) = (self.iac.nodes[place].written(), &self.iac.name);
         let message = format!("the {what} of the part `{part}` have no place in `{role}`: {why}");
         let hint = format!("the role does the part as one of its states, as in `role = {part}`");
-        let span = self.iac.nodes[place].place.0;
+        let span = self.iac.nodes[place].position.0;
         self.diagnostics.push(Diagnostic::error("E0839", span, message).with_hint(hint));
     }
 
@@ -253,9 +253,13 @@ impl<'a> BoundaryTransitions<'a> {
         let mut into = role.transitions.iter().filter(|it| it.target == place && !it.refinement.internal);
         let is_composite = |node: usize| matches!(role.nodes[node].kind.as_str(), "OR" | "AND");
         let has_outcomes = self.exits.iter().any(|exit| has_content(exit));
-        into.any(|way| match way.source == place {
+        into.any(|transition| match transition.source == place {
             true => self.rule.is_some() || has_outcomes,
-            false => self.rule.is_some() && is_composite(way.source) && !is_inside(role, way.source, place),
+            false => {
+                self.rule.is_some()
+                    && is_composite(transition.source)
+                    && !is_inside(role, transition.source, place)
+            }
         })
     }
 }
@@ -355,7 +359,7 @@ fn copy_refinement(theirs: &IacTransition, own: &mut IacTransition) -> Option<Di
     let found = differs.then(|| {
         let message =
             format!("`{}` was on `{}` of the role; the protocol has `{}`", own.te, own.name, theirs.te);
-        Diagnostic::warning("E0836", own.place.0, message)
+        Diagnostic::warning("E0836", own.position.0, message)
     });
     (own.te, own.refinement) = (theirs.te.clone(), theirs.refinement.clone());
     found

@@ -35,8 +35,8 @@ fn chart(
 ) -> Iac {
     let (formulas, findings) = liveness::parse(&role.liveness);
     let (chart, more) = transform::liveness_to_statechart(&formulas);
-    let place = role.liveness_place.0;
-    let placed = |finding: Diagnostic| Diagnostic { span: place, ..finding };
+    let span = role.liveness_place.0;
+    let placed = |finding: Diagnostic| Diagnostic { span, ..finding };
     diagnostics.extend(findings.into_iter().chain(more).map(placed));
     let mut iac = Iac::from_statechart(&chart, ChartKind::Intra);
     for node in iac.nodes.iter_mut().filter(|node| node.kind == "BASIC") {
@@ -48,7 +48,7 @@ fn chart(
         if known.is_none() {
             let message = format!("the model has no activity `{}`", node.name);
             let names = srm.activities.iter().map(|activity| activity.name.as_str());
-            let found = Diagnostic::warning("E0249", place, message);
+            let found = Diagnostic::warning("E0249", span, message);
             diagnostics.push(found.with_suggestion(suggestions, &node.name, names));
         }
     }

@@ -25,7 +25,7 @@ pub fn sag_to_suc(sag: &Sag) -> (Suc, Vec<Diagnostic>) {
     let nobodys = sag.goals.iter().filter(|goal| goal.depender.is_none());
     let faults = nobodys.map(|goal| {
         let message = format!("the goal `{}` has no actor", goal.name);
-        Diagnostic::error("E0830", goal.place.0, message).with_hint("name it by `depender = actor`")
+        Diagnostic::error("E0830", goal.position.0, message).with_hint("name it by `depender = actor`")
     });
     (Suc { roles, usecases }, faults.collect())
 }

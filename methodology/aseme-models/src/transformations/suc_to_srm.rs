@@ -121,7 +121,7 @@ impl<'a> SrmBuilder<'a> {
                 suc.roles[role].name, usecase.name
             );
             let hint = "the first participant of a use case performs it";
-            self.diagnostics.push(Diagnostic::warning("E0832", usecase.place.0, message).with_hint(hint));
+            self.diagnostics.push(Diagnostic::warning("E0832", usecase.position.0, message).with_hint(hint));
             return None;
         }
         Some(format!("{capability}={}\n", joined(names.iter().map(String::as_str))))
@@ -136,7 +136,7 @@ impl<'a> SrmBuilder<'a> {
             self.srm.activities.push(RoleActivity {
                 name: name.into(),
                 functionality,
-                place: TextPosition::default(),
+                position: TextPosition::default(),
             });
             self.srm.activities.len() - 1
         })

@@ -21,7 +21,7 @@ impl Assignment {
         };
         self.value.find_map(&mut |part| is_constant(part)).is_none().then(|| {
             let target = ExpressionKind::Variable(self.target.clone());
-            equation(Expression { kind: target, place: self.target.place }, &self.value, constants)
+            equation(Expression { kind: target, position: self.target.position }, &self.value, constants)
         })
     }
 
@@ -47,13 +47,13 @@ impl Assignment {
 
 /// That an operand has a value.
 fn equation(target: Expression, value: &Expression, constants: &[Constant]) -> Expression {
-    let place = target.place;
+    let position = target.position;
     let kind = match truth(value, constants) {
         Some(true) => target.kind,
         Some(false) => ExpressionKind::Not(Box::new(target)),
         None => ExpressionKind::Compare(Box::new(target), Comparison::Equal, Box::new(value.clone())),
     };
-    Expression { kind, place }
+    Expression { kind, position }
 }
 
 /// The value of a constant condition.

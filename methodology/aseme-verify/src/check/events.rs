@@ -55,11 +55,11 @@ fn has_scripts(subject: &CheckedModel) -> bool {
 /// All actions of the chart with their spans.
 pub(crate) fn actions(subject: &CheckedModel) -> impl Iterator<Item = (&Action, Span)> {
     let of_transitions = subject.chart.transitions().flat_map(|(id, transition)| {
-        let span = subject.places.transition(id);
+        let span = subject.spans.transition(id);
         transition.expression.actions.iter().map(move |action| (action, span))
     });
     let of_nodes = subject.chart.nodes().flat_map(|(id, node)| {
-        let span = subject.places.node(id);
+        let span = subject.spans.node(id);
         node.entry.iter().chain(&node.exit).map(move |action| (action, span))
     });
     of_transitions.chain(of_nodes)
@@ -95,7 +95,7 @@ pub(crate) fn waited(subject: &CheckedModel) -> BTreeMap<String, Span> {
             _ => &[],
         };
         for event in events {
-            waited.entry(event.text()).or_insert(subject.places.transition(id));
+            waited.entry(event.text()).or_insert(subject.spans.transition(id));
         }
     }
     waited

@@ -63,7 +63,7 @@ fn not_explored(subject: &CheckedModel, reason: Diagnostic) -> Finding {
     if reason.code.starts_with('M') {
         // a structural fault that shows only when segments are joined into compound transitions
         let span =
-            if reason.span == Span::default() { subject.places.node(Statechart::ROOT) } else { reason.span };
+            if reason.span == Span::default() { subject.spans.node(Statechart::ROOT) } else { reason.span };
         return Diagnostic { span, ..reason }.into();
     }
     let message = format!("not explored: {}", reason.message);
@@ -135,7 +135,7 @@ impl ExplorationCheck<'_> {
         cycle.dedup();
         let arrows: Vec<String> = cycle.iter().map(|&id| format!("`{}`", self.subject.arrow(id))).collect();
         let message = format!("livelock: the chart repeats {} again and again", arrows.join(", "));
-        let span = cycle.first().map_or(Span::default(), |&id| self.subject.places.transition(id));
+        let span = cycle.first().map_or(Span::default(), |&id| self.subject.spans.transition(id));
         let severity = if is_proven { Severity::Error } else { Severity::Warning };
         let found = Diagnostic { severity, ..Diagnostic::warning("M13", span, message) };
         found.with_hint("let a transition of the cycle wait for an event, a timer or an activity")
@@ -145,15 +145,19 @@ impl ExplorationCheck<'_> {
     fn joins(&self) -> Vec<Finding> {
         let joins = self.subject.chart.nodes().filter(|(_, node)| node.kind == NodeKind::Join);
         let never = joins.filter(|(id, _)| {
-            let sources: Vec<NodeId> =
-                self.subject.incoming(*id).iter().map(|&way| self.subject.transition(way).source).collect();
+            let sources: Vec<NodeId> = self
+                .subject
+                .incoming(*id)
+                .iter()
+                .map(|&transition| self.subject.transition(transition).source)
+                .collect();
             sources.iter().all(|&source| self.found.was_entered(source))
                 && self.found.first(|state| sources.iter().all(|&source| state.is_active(source))).is_none()
         });
         never
             .map(|(id, _)| {
                 let message = format!("the sources of `{}` are never active together", self.subject.path(id));
-                let found = Diagnostic::error("M04", self.subject.places.node(id), message);
+                let found = Diagnostic::error("M04", self.subject.spans.node(id), message);
                 found.with_hint("each source of a JOIN waits for the others").into()
             })
             .collect()
@@ -184,9 +188,9 @@ impl ExplorationCheck<'_> {
     /// Whether no other finding explains why a node is unreachable: neither a transition to it from
     /// a reached node nor an unreached node before it.
     fn is_first_of_unreached(&self, id: NodeId) -> bool {
-        self.subject.incoming(id).iter().all(|&way| {
-            let source = self.subject.transition(way).source;
-            !self.was_possible(way) && (source >= id || self.subject.contains(id, source))
+        self.subject.incoming(id).iter().all(|&transition| {
+            let source = self.subject.transition(transition).source;
+            !self.was_possible(transition) && (source >= id || self.subject.contains(id, source))
         })
     }
 
@@ -197,7 +201,7 @@ impl ExplorationCheck<'_> {
             NodeKind::Or | NodeKind::And | NodeKind::Basic | NodeKind::Start => {
                 self.found.was_entered(source)
             }
-            _ => self.subject.incoming(source).iter().any(|&way| self.found.was_taken(way)),
+            _ => self.subject.incoming(source).iter().any(|&transition| self.found.was_taken(transition)),
         }
     }
 
@@ -205,7 +209,7 @@ impl ExplorationCheck<'_> {
     fn unreachable_transitions(&self, accounted: &BTreeSet<TransitionId>) -> Vec<Finding> {
         let ids = self.subject.chart.transitions().map(|(id, _)| id);
         let never = ids.filter(|&id| {
-            let places = &self.subject.places;
+            let places = &self.subject.spans;
             let (guard, whole) = (places.guard(id), places.transition(id));
             let is_told =
                 guard != Span::default() && (self.blamed.contains(&guard) || self.blamed.contains(&whole));

@@ -54,9 +54,9 @@ pub(crate) fn stale(subject: &CheckedModel, world: &ProgramSymbols) -> Vec<Diagn
     let mut found = Vec::new();
     for (&id, read) in &reads {
         let source = subject.chart.transition(id).source;
-        let ways = &subject.outgoing[source.0 as usize];
+        let transitions = &subject.outgoing[source.0 as usize];
         let target = |id: TransitionId| subject.chart.transition(id).target;
-        if ways.iter().all(|&way| target(way) == target(id)) {
+        if transitions.iter().all(|&transition| target(transition) == target(id)) {
             // No guard is decided here.
             continue;
         }
@@ -94,7 +94,7 @@ fn report(
     let publishes = |(_, topics): &(&String, &Option<BTreeSet<String>>)| {
         topics.as_ref().is_some_and(|topics| topics.contains(path))
     };
-    let found = Diagnostic::warning("M29", subject.places.guard(guard), message);
+    let found = Diagnostic::warning("M29", subject.spans.guard(guard), message);
     match world.activities.iter().find(publishes) {
         Some((activity, _)) => {
             found.with_hint(format!("let `{activity}` stand between the two: `{state} . {activity}`"))
@@ -179,8 +179,8 @@ impl<'a> ArrivalSearch<'a> {
             let parent = here.parent.filter(|parent| chart.node(*parent).kind == NodeKind::Or);
             return parent.into_iter().collect();
         }
-        let ways = self.subject.outgoing[node.0 as usize].iter();
-        let ways = ways.filter(|&&way| self.subject.trigger(way).is_none());
+        let transition = self.subject.outgoing[node.0 as usize].iter();
+        let ways = transition.filter(|&&way| self.subject.trigger(way).is_none());
         ways.flat_map(|&way| self.entered(chart.transition(way).target)).collect()
     }
 

@@ -57,6 +57,6 @@ impl<'a> GuardCheck<'a> {
             return None;
         };
         let message = format!("the guard of `{}` {says}", self.subject.arrow(id));
-        Some(Diagnostic::warning("M09", self.subject.places.guard(id), message).with_hint(hint))
+        Some(Diagnostic::warning("M09", self.subject.spans.guard(id), message).with_hint(hint))
     }
 }

@@ -49,7 +49,7 @@ struct PlacedTransitions {
 
 impl PlacedTransitions {
     fn new(subject: &CheckedModel) -> PlacedTransitions {
-        let spans = subject.chart.transitions().map(|(id, _)| subject.places.transition(id));
+        let spans = subject.chart.transitions().map(|(id, _)| subject.spans.transition(id));
         let mut ends: Vec<(usize, usize)> =
             spans.filter(|span| span.end > span.start).map(|span| (span.start, span.end)).collect();
         ends.sort_unstable();
@@ -82,7 +82,7 @@ fn activities(subject: &CheckedModel, world: &ProgramSymbols) -> Vec<Diagnostic>
                 "write it, or link the crate that has it; `--unlinked` is for models of other programs".into()
             }
         };
-        found.push(Diagnostic::error("M21", subject.places.node(id), message).with_hint(hint));
+        found.push(Diagnostic::error("M21", subject.spans.node(id), message).with_hint(hint));
     }
     found
 }
@@ -105,7 +105,7 @@ pub(crate) fn names_like_formulas(subject: &CheckedModel) -> Vec<Diagnostic> {
         .map(|(id, node)| {
             let message = format!("`{}` has no formula and is taken for an activity", node.name);
             let hint = "write its formula, or check the role with the program that has the activity";
-            Diagnostic::warning("M21", subject.places.node(id), message).with_hint(hint)
+            Diagnostic::warning("M21", subject.spans.node(id), message).with_hint(hint)
         })
         .collect()
 }
@@ -183,7 +183,7 @@ fn written_in_same_step(
         subject.arrow(reading),
         subject.arrow(writing)
     );
-    let found = Diagnostic::warning("M11", subject.places.guard(reading), says);
+    let found = Diagnostic::warning("M11", subject.spans.guard(reading), says);
     found.with_hint("raise an event in one region and wait for it in the other, or use one region")
 }
 
@@ -243,7 +243,7 @@ fn undelivered_at(
         subject.arrow(id),
         names.join(", ")
     );
-    let diagnostic = Diagnostic::warning("M18", subject.places.guard(id), says);
+    let diagnostic = Diagnostic::warning("M18", subject.spans.guard(id), says);
     let hint = format!("run its publisher before, or add a transition for `{message} == NULL`");
     Some(Finding { diagnostic: diagnostic.with_hint(hint), trace: Some(way) })
 }

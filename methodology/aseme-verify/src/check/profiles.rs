@@ -33,11 +33,11 @@ pub(crate) fn check(subject: &CheckedModel) -> Vec<Diagnostic> {
         ),
         ("a state defers events: SCXML has no deferral", deferring(subject)),
     ];
-    let constructs = constructs.into_iter().filter_map(|(says, places)| {
-        let first = *places.first()?;
+    let constructs = constructs.into_iter().filter_map(|(says, spans)| {
+        let first = *spans.first()?;
         let found = Diagnostic::warning("M25", first, says);
         let found = Diagnostic { severity: Severity::Information, ..found };
-        Some(match places.len() {
+        Some(match spans.len() {
             1 => found,
             count => found.with_hint(format!("{count} occurrences")),
         })
@@ -47,7 +47,7 @@ pub(crate) fn check(subject: &CheckedModel) -> Vec<Diagnostic> {
 
 fn ways(subject: &CheckedModel, is_meant: impl Fn(yase::TransitionId) -> bool) -> Vec<Span> {
     let ways = subject.chart.transitions().map(|(id, _)| id).filter(|&id| is_meant(id));
-    ways.map(|id| subject.places.transition(id)).collect()
+    ways.map(|id| subject.spans.transition(id)).collect()
 }
 
 fn nodes(subject: &CheckedModel, is_meant: impl Fn(NodeId) -> bool) -> Vec<Span> {
@@ -56,7 +56,7 @@ fn nodes(subject: &CheckedModel, is_meant: impl Fn(NodeId) -> bool) -> Vec<Span>
         .nodes()
         .map(|(id, _)| id)
         .filter(|&id| is_meant(id))
-        .map(|id| subject.places.node(id))
+        .map(|id| subject.spans.node(id))
         .collect()
 }
 

@@ -54,7 +54,7 @@ fn unknown_fields(participant: &Participant, world: &ProgramSymbols) -> Vec<Diag
         });
         for wrong in compiled.err().unwrap_or_default() {
             let message = format!("in `[{condition}]` of `{}`: {}", participant.name, wrong.message);
-            found.push(Diagnostic { code: "M17", span: participant.place.0, message, ..wrong });
+            found.push(Diagnostic { code: "M17", span: participant.position.0, message, ..wrong });
         }
     }
     found
@@ -81,7 +81,7 @@ fn without_functionality(system: &SystemRoles) -> Vec<Diagnostic> {
     without
         .map(|activity| {
             let message = format!("the activity `{}` has no functionality", activity.name);
-            warning("S01", activity.place.0, message, "name the functionality that it uses")
+            warning("S01", activity.position.0, message, "name the functionality that it uses")
         })
         .collect()
 }
@@ -95,7 +95,7 @@ fn unused_functionalities(system: &SystemRoles) -> Vec<Diagnostic> {
             let message = format!("no activity uses the functionality `{}`", functionality.description);
             warning(
                 "S02",
-                functionality.place.0,
+                functionality.position.0,
                 message,
                 "name it in the activities that use it, or remove it",
             )
@@ -119,7 +119,7 @@ fn in_no_formula(system: &SystemRoles, suggestions: &Suggestions) -> Vec<Diagnos
             let message = format!("the activity `{}` occurs in no formula", activity.name);
             let found = warning(
                 "S03",
-                activity.place.0,
+                activity.position.0,
                 message,
                 "add it to the formula of the role that executes it",
             );
@@ -153,7 +153,7 @@ fn participants(aip: &Aip) -> Vec<Diagnostic> {
     alone
         .map(|(_, participant)| {
             let message = format!("`{}` takes part in no protocol", participant.name);
-            warning("S04", participant.place.0, message, "name it among the participants of a protocol")
+            warning("S04", participant.position.0, message, "name it among the participants of a protocol")
         })
         .collect()
 }

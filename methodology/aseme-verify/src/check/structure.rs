@@ -13,7 +13,7 @@ pub(crate) fn check(subject: &CheckedModel) -> Vec<Diagnostic> {
     let errors = elements.filter(|(diagnostic, _)| diagnostic.is_error());
     let place = |(diagnostic, about): (Diagnostic, _)| {
         let hint = diagnostic.hint.clone().or_else(|| usual_hint(diagnostic.code).map(String::from));
-        Diagnostic { span: subject.places.element(about), hint, ..diagnostic }
+        Diagnostic { span: subject.spans.element(about), hint, ..diagnostic }
     };
     let mut found: Vec<Diagnostic> = errors.map(place).collect();
     if found.is_empty() {
@@ -123,7 +123,11 @@ fn reached_without(subject: &CheckedModel, avoided: NodeId) -> BTreeSet<NodeId> 
 
 /// M23: alternatives with weights that also have an order.
 fn drawn(subject: &CheckedModel, id: NodeId) -> Vec<Diagnostic> {
-    let drawn = subject.outgoing(id).iter().copied().filter(|&way| subject.transition(way).weight.is_some());
+    let drawn = subject
+        .outgoing(id)
+        .iter()
+        .copied()
+        .filter(|&transition| subject.transition(transition).weight.is_some());
     let drawn: Vec<TransitionId> = drawn.collect();
     let Some(&first) = drawn.first() else { return Vec::new() };
     let highest = subject.transition(first).priority;

@@ -39,7 +39,7 @@ impl<'a> TimerCheck<'a> {
         for (id, transition) in subject.chart.transitions() {
             let board = blackboard(subject, id);
             for (name, is_sure) in transition.expression.guard.iter().flat_map(timers_read) {
-                let entry = read.entry((board, name)).or_insert((false, subject.places.guard(id)));
+                let entry = read.entry((board, name)).or_insert((false, subject.spans.guard(id)));
                 entry.0 |= is_sure;
             }
         }

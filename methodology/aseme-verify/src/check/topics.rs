@@ -26,7 +26,7 @@ pub(crate) fn unmet(subject: &CheckedModel, world: &ProgramSymbols) -> Vec<Diagn
             others.as_ref().is_none_or(|others| others.contains(topic.path.as_str()))
         };
         match (read.get(&topic.id), written.get(&topic.id)) {
-            (Some(&place), None) if !meets(&published) => found.push(never_published(topic, place)),
+            (Some(&span), None) if !meets(&published) => found.push(never_published(topic, span)),
             (Some(&place), None) if own.as_ref().is_some_and(|own| !own.contains(topic.path.as_str())) => {
                 found.extend(
                     published_elsewhere(topic, world).map(|others| from_elsewhere(topic, place, &others)),
@@ -72,13 +72,13 @@ fn read(subject: &CheckedModel, chart: &CompiledChart) -> BTreeMap<TopicId, Span
     let mut read = BTreeMap::new();
     for (transition, _, guard) in chart.guards() {
         for &topic in guard.reads() {
-            read.entry(topic).or_insert(subject.places.guard(transition));
+            read.entry(topic).or_insert(subject.spans.guard(transition));
         }
     }
     let (events, waited) = (chart.events(), super::events::waited(subject));
     for event in events.ids().filter(|&event| events.host(event).is_none()) {
-        let place = waited.get(events.name(event)).copied().unwrap_or_default();
-        events.topic(event).map(|topic| read.entry(topic).or_insert(place));
+        let span = waited.get(events.name(event)).copied().unwrap_or_default();
+        events.topic(event).map(|topic| read.entry(topic).or_insert(span));
     }
     let is_foreign =
         |topic: &TopicId| chart.sources().any(|it| it.topic == *topic && it.origin != Origin::Own);
@@ -89,34 +89,34 @@ fn read(subject: &CheckedModel, chart: &CompiledChart) -> BTreeMap<TopicId, Span
 /// The topics that actions write or publish, with their spans.
 fn written(subject: &CheckedModel, chart: &CompiledChart) -> BTreeMap<TopicId, Span> {
     let mut written = BTreeMap::new();
-    for (place, _, effects) in chart.effects() {
-        let place = match place {
-            ActionLocation::Transition(id) => subject.places.transition(id),
-            ActionLocation::Entry(node) | ActionLocation::Exit(node) => subject.places.node(node),
+    for (location, _, effects) in chart.effects() {
+        let span = match location {
+            ActionLocation::Transition(id) => subject.spans.transition(id),
+            ActionLocation::Entry(node) | ActionLocation::Exit(node) => subject.spans.node(node),
         };
         for effect in effects {
             if let Effect::Assign { topic, .. } | Effect::Publish { topic } = effect {
-                written.entry(*topic).or_insert(place);
+                written.entry(*topic).or_insert(span);
             }
         }
     }
     written
 }
 
-fn never_published(topic: &TopicEntry, place: Span) -> Diagnostic {
+fn never_published(topic: &TopicEntry, span: Span) -> Diagnostic {
     let message = format!("`{}` is read here, but no activity publishes it", topic.path);
-    let found = Diagnostic::warning("M17", place, message);
+    let found = Diagnostic::warning("M17", span, message);
     found.with_hint("write an activity that publishes it, or declare the topic (`Activity::topics`)")
 }
 
-fn from_elsewhere(topic: &TopicEntry, place: Span, others: &str) -> Diagnostic {
+fn from_elsewhere(topic: &TopicEntry, span: Span, others: &str) -> Diagnostic {
     let message = format!("`{}` is read here, but no activity of this chart publishes it", topic.path);
-    let found = Diagnostic { severity: Severity::Information, ..Diagnostic::warning("M17", place, message) };
+    let found = Diagnostic { severity: Severity::Information, ..Diagnostic::warning("M17", span, message) };
     found.with_hint(format!("another agent of the robot has to run one of {others}"))
 }
 
-fn never_read(topic: &TopicEntry, place: Span) -> Diagnostic {
+fn never_read(topic: &TopicEntry, span: Span) -> Diagnostic {
     let message = format!("`{}` is written here, but neither the chart nor an activity reads it", topic.path);
-    let found = Diagnostic::warning("M17", place, message);
+    let found = Diagnostic::warning("M17", span, message);
     found.with_hint("let an activity read it, or remove the action")
 }

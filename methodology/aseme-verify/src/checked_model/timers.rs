@@ -16,12 +16,12 @@ pub(crate) fn started(model: &CheckedModel) -> BTreeMap<TimerKey, Span> {
     let mut started = BTreeMap::new();
     for (id, transition) in model.chart.transitions() {
         for (name, _) in starts(&transition.expression.actions) {
-            started.entry((blackboard(model, id), name)).or_insert(model.places.transition(id));
+            started.entry((blackboard(model, id), name)).or_insert(model.spans.transition(id));
         }
     }
     for (id, node) in model.chart.nodes() {
         for (name, _) in starts(&node.entry).chain(starts(&node.exit)) {
-            started.entry((region_of(model, id), name)).or_insert(model.places.node(id));
+            started.entry((region_of(model, id), name)).or_insert(model.spans.node(id));
         }
     }
     started

@@ -53,7 +53,7 @@ pub(crate) struct ReceivedMessage {
     /// The name of its arrival in triggers, if a trigger waits for it.
     pub(crate) event: Option<String>,
     /// A transition that waits for it or reads it.
-    pub(crate) way: TransitionId,
+    pub(crate) transition: TransitionId,
 }
 
 /// A state in which a chart waits for messages of others.
@@ -63,15 +63,15 @@ pub(crate) struct WaitingState {
     /// The message it waits for, as an index into the robot's received messages.
     pub(crate) received_message: usize,
     /// The transition that would end the wait.
-    pub(crate) way: TransitionId,
+    pub(crate) transition: TransitionId,
 }
 
 /// A message that a chart sends.
 #[derive(Clone, Debug)]
 pub(crate) struct SentMessage {
-    pub(crate) word: MessageName,
+    pub(crate) name: MessageName,
     /// The actions and activities that send it, at least one.
-    pub(crate) places: Vec<MessageUse>,
+    pub(crate) uses: Vec<MessageUse>,
 }
 
 /// A robot prepared for composition.
@@ -121,12 +121,12 @@ impl ComposedRobot {
             events().any(|(other, that)| {
                 other < *index
                     && that.called.host == it.called.host
-                    && that.called.word.means(&it.called.word)
+                    && that.called.name.means(&it.called.name)
             })
         });
         twice.map(|(_, message)| {
             let text = format!("`{}` is awaited under two names", message.called.prefix.text());
-            let found = Diagnostic::error("E0935", self.subject.places.transition(message.way), text);
+            let found = Diagnostic::error("E0935", self.subject.spans.transition(message.transition), text);
             found.with_hint("use the same notation in each trigger").in_source(&self.source)
         })
     }
@@ -163,11 +163,11 @@ impl ComposedRobot {
     fn idle_regions(&self, read: &[bool]) -> Vec<NodeId> {
         let chart = self.abstraction.chart.statechart();
         let sent = self.sent.iter().zip(read).filter(|(_, is_read)| **is_read);
-        let sending = sent.flat_map(|(message, _)| &message.places).map(|place| match *place {
-            MessageUse::Way(way) => chart.transition(way).source,
+        let sending = sent.flat_map(|(message, _)| &message.uses).map(|place| match *place {
+            MessageUse::Way(transition) => chart.transition(transition).source,
             MessageUse::Node(node) => node,
         });
-        let receiving = self.received.iter().map(|message| chart.transition(message.way).source);
+        let receiving = self.received.iter().map(|message| chart.transition(message.transition).source);
         let nodes: Vec<NodeId> =
             sending.chain(receiving).chain(self.waits.iter().map(|wait| wait.node)).collect();
         cone_of_influence::idle_but(chart, &|region| {
@@ -224,7 +224,8 @@ impl ComposedRobot {
     ) -> Vec<(usize, Vec<FieldSetting>)> {
         let chart = &self.subject.chart;
         let of_exits = seen.left.iter().flat_map(|&node| &chart.node(node).exit);
-        let of_ways = seen.taken.iter().flat_map(|&way| &chart.transition(way).expression.actions);
+        let of_ways =
+            seen.taken.iter().flat_map(|&transition| &chart.transition(transition).expression.actions);
         let of_entries = seen.entered.iter().flat_map(|&node| &chart.node(node).entry);
         let mut sends: BTreeMap<usize, BTreeMap<String, Option<String>>> = BTreeMap::new();
         for (word, setting) in of_exits
@@ -251,7 +252,7 @@ impl ComposedRobot {
     }
 
     fn sent_message_index(&self, word: &MessageName) -> Option<usize> {
-        self.sent.iter().position(|it| it.word == *word)
+        self.sent.iter().position(|it| it.name == *word)
     }
 }
 
@@ -289,7 +290,7 @@ pub(crate) struct RobotDeployment<'a> {
     /// The hosts of all robots.
     pub(crate) hosts: &'a [&'a str],
     /// The messages that other agents on the same host send.
-    pub(crate) beside: Vec<MessageName>,
+    pub(crate) sent_by_others: Vec<MessageName>,
 }
 
 /// The messages that concern a chart: those of robots, itself among them.
@@ -315,7 +316,7 @@ impl<'a> MessageFilter<'a> {
     /// the own one. Its own are what has been read before, whatever it is.
     fn read(&self, path: &yase::expression::Path) -> Option<MessageReference> {
         let of_host = message_reference(path, self.deployment.hosts.iter().copied(), self.world);
-        of_host.or_else(|| self.without_host(path, &self.deployment.beside))
+        of_host.or_else(|| self.without_host(path, &self.deployment.sent_by_others))
     }
 
     /// The message that a trigger waits for. A message that the chart sends to itself may lack the
@@ -326,7 +327,7 @@ impl<'a> MessageFilter<'a> {
 
     fn without_host(&self, path: &yase::expression::Path, sent: &[MessageName]) -> Option<MessageReference> {
         let called = message_names::own(path, self.deployment.host, self.world)?;
-        sent.iter().any(|message| message.means(&called.word)).then_some(called)
+        sent.iter().any(|message| message.means(&called.name)).then_some(called)
     }
 }
 
@@ -339,9 +340,9 @@ fn received_messages(chart: &Statechart, filter: &MessageFilter<'_>) -> Vec<Rece
         for (called, event) in waited.chain(read) {
             let Some(called) = called else { continue };
             match found.iter_mut().find(|it| it.called.prefix == called.prefix) {
-                Some(known) if known.event.is_none() => (known.event, known.way) = (event, way),
+                Some(known) if known.event.is_none() => (known.event, known.transition) = (event, way),
                 Some(_) => {}
-                None => found.push(ReceivedMessage { called, event, way }),
+                None => found.push(ReceivedMessage { called, event, transition: way }),
             }
         }
     }
@@ -359,9 +360,9 @@ pub(crate) fn messages_to_send(chart: &Statechart, world: Option<&ProgramSymbols
         sent.map(move |word| (MessageUse::Node(id), word)).collect::<Vec<_>>()
     });
     for (place, word) in by_actions.chain(by_activities) {
-        match found.iter_mut().find(|it| it.word == word) {
-            Some(known) => known.places.push(place),
-            None => found.push(SentMessage { word, places: vec![place] }),
+        match found.iter_mut().find(|it| it.name == word) {
+            Some(known) => known.uses.push(place),
+            None => found.push(SentMessage { name: word, uses: vec![place] }),
         }
     }
     found
@@ -383,7 +384,7 @@ fn waits(
         let Some(received_message) = named else { continue };
         for node in stable_nodes(subject, transition.source) {
             if !found.iter().any(|wait| wait.node == node) {
-                found.push(WaitingState { node, received_message, way });
+                found.push(WaitingState { node, received_message, transition: way });
             }
         }
     }
@@ -405,7 +406,9 @@ fn stable_nodes(subject: &CheckedModel, node: NodeId) -> Vec<NodeId> {
                 found.extend(inside.filter(|&inner| subject.kind(inner) == NodeKind::End));
             }
             NodeKind::And | NodeKind::End => {}
-            _ => open.extend(subject.incoming(node).iter().map(|&way| subject.transition(way).source)),
+            _ => open.extend(
+                subject.incoming(node).iter().map(|&transition| subject.transition(transition).source),
+            ),
         }
     }
     found
@@ -439,7 +442,7 @@ pub(crate) struct Behaviour {
 impl Behaviour {
     fn new(found: LabelledGraph, step_interfaces: Vec<StepInterface>, waits: &[WaitingState]) -> Behaviour {
         let begin = found.states().len();
-        let mut full = Graph { initial: vec![begin], ends: Vec::new(), ways: vec![Vec::new(); begin + 1] };
+        let mut full = Graph { initial: vec![begin], ends: Vec::new(), edges: vec![Vec::new(); begin + 1] };
         full.ends = found.states().iter().map(|it| it.status != Status::Running).chain([false]).collect();
         for (edge, step) in found.steps().iter().enumerate() {
             let interface = &step_interfaces[step.letter as usize];
@@ -454,7 +457,7 @@ impl Behaviour {
                 || !interface.sends.is_empty()
                 || !interface.exited_waits.is_empty()
             {
-                full.ways[from].push(LabelledEdge { observable: shows, to: step.to, edge });
+                full.edges[from].push(LabelledEdge { observable: shows, to: step.to, edge });
             }
         }
         let waiting_in = |state: &yase_explore::LabelledState| -> Vec<usize> {
@@ -488,8 +491,8 @@ impl Behaviour {
     }
 
     /// The effects of an edge on other robots.
-    pub(crate) fn step_interface(&self, way: &LabelledEdge) -> &StepInterface {
-        match way.observable {
+    pub(crate) fn step_interface(&self, edge: &LabelledEdge) -> &StepInterface {
+        match edge.observable {
             Observable::Letter(letter) => &self.step_interfaces[letter as usize],
             Observable::Nothing | Observable::Other => &self.step_interfaces[0],
         }
@@ -502,7 +505,7 @@ impl Behaviour {
         let mut open = std::collections::VecDeque::from([state]);
         while let Some(at) = open.pop_front() {
             let fits = |way: &&LabelledEdge| way.observable == shows && self.classes[way.to] == to;
-            if let Some(last) = self.full.ways[at].iter().find(fits) {
+            if let Some(last) = self.full.edges[at].iter().find(fits) {
                 let mut steps = vec![last.edge];
                 let mut back = at;
                 while let Some(Some((before, edge))) = came.get(&back) {
@@ -512,7 +515,7 @@ impl Behaviour {
                 steps.reverse();
                 return (steps, last.to);
             }
-            for way in self.full.ways[at].iter().filter(|way| way.observable == Observable::Nothing) {
+            for way in self.full.edges[at].iter().filter(|way| way.observable == Observable::Nothing) {
                 if self.classes[way.to] == class && !came.contains_key(&way.to) {
                     came.insert(way.to, Some((at, way.edge)));
                     open.push_back(way.to);
@@ -543,17 +546,17 @@ fn first_classes(full: &Graph, waiting: &[Vec<usize>], begin: usize) -> Vec<usiz
 
 /// The classes from which a wait can end on some path.
 fn wait_end_classes(graph: &Graph, step_interfaces: &[StepInterface], wait: usize) -> Vec<bool> {
-    let ends = |way: &LabelledEdge| match way.observable {
+    let ends = |edge: &LabelledEdge| match edge.observable {
         Observable::Letter(letter) => step_interfaces[letter as usize].exited_waits.contains(&wait),
         Observable::Nothing | Observable::Other => false,
     };
-    let mut before = vec![Vec::new(); graph.ways.len()];
+    let mut before = vec![Vec::new(); graph.edges.len()];
     let mut open = Vec::new();
-    for (from, ways) in graph.ways.iter().enumerate() {
-        ways.iter().for_each(|way| before[way.to].push(from));
-        open.extend(ways.iter().any(ends).then_some(from));
+    for (from, edges) in graph.edges.iter().enumerate() {
+        edges.iter().for_each(|way| before[way.to].push(from));
+        open.extend(edges.iter().any(ends).then_some(from));
     }
-    let mut reaches = vec![false; graph.ways.len()];
+    let mut reaches = vec![false; graph.edges.len()];
     while let Some(class) = open.pop() {
         if !std::mem::replace(&mut reaches[class], true) {
             open.extend(before[class].iter().copied());

@@ -59,7 +59,7 @@ fn replayed(
     }
     for (event, to) in product.steps_to(state) {
         match event {
-            GlobalEvent::Step { robot: it, way } if it == robot => steps.go(way, &[])?,
+            GlobalEvent::Step { robot: it, way: edge } if it == robot => steps.go(edge, &[])?,
             GlobalEvent::Arrival { passage, way } if product.passages[passage].to == robot => {
                 let content = product.states[to].newest[passage];
                 let is_known = is_only_route(product, robot, passage);
@@ -112,8 +112,8 @@ struct RobotSteps<'p> {
 
 impl RobotSteps<'_> {
     /// Executes the steps of a path; messages arrive before the last step.
-    fn go(&mut self, way: LabelledEdge, messages: &[ArrivingMessage]) -> Result<(), String> {
-        let (steps, to) = self.behaviour.steps(self.at, way.observable, way.to);
+    fn go(&mut self, edge: LabelledEdge, messages: &[ArrivingMessage]) -> Result<(), String> {
+        let (steps, to) = self.behaviour.steps(self.at, edge.observable, edge.to);
         self.at = to;
         let last = steps.len().saturating_sub(1);
         for (number, place) in steps.into_iter().enumerate() {

@@ -114,14 +114,15 @@ impl<'a> ContentTable<'a> {
 }
 
 fn expression_of(kind: ExpressionKind) -> Expression {
-    Expression { kind, place: TextPosition::default() }
+    Expression { kind, position: TextPosition::default() }
 }
 
 /// The condition that a field has a value.
 fn is(prefix: &Path, field: &str, value: &str) -> Option<Expression> {
-    let names = field.split('.').map(|text| Name { text: text.to_owned(), place: TextPosition::default() });
+    let names =
+        field.split('.').map(|text| Name { text: text.to_owned(), position: TextPosition::default() });
     let segments = prefix.segments.iter().cloned().chain(names).collect();
-    let field = expression_of(ExpressionKind::Variable(Path { segments, place: TextPosition::default() }));
+    let field = expression_of(ExpressionKind::Variable(Path { segments, position: TextPosition::default() }));
     let value = parse_condition(value).0?;
     Some(match value.kind {
         ExpressionKind::Bool(true) => field,

@@ -118,7 +118,7 @@ fn text(names: &[Name]) -> String {
 pub(crate) struct MessageReference {
     /// The robot that sends it.
     pub(crate) host: String,
-    pub(crate) word: MessageName,
+    pub(crate) name: MessageName,
     /// The path up to and including the message.
     pub(crate) prefix: Path,
 }
@@ -139,10 +139,10 @@ pub(crate) fn message_reference<'h>(
         _ => return None,
     };
     let segments = path.segments.get(..=count)?.to_vec();
-    let prefix = Path { segments, place: path.place };
+    let prefix = Path { segments, position: path.position };
     Some(MessageReference {
         host: host.to_owned(),
-        word: word.completed(world.map(|world| &world.vocabulary)),
+        name: word.completed(world.map(|world| &world.vocabulary)),
         prefix,
     })
 }
@@ -150,10 +150,10 @@ pub(crate) fn message_reference<'h>(
 /// Resolves a path without a robot's name to a message of the chart's own robot.
 pub(crate) fn own(path: &Path, robot: &str, world: Option<&ProgramSymbols>) -> Option<MessageReference> {
     let (word, count) = MessageName::of(&path.segments)?;
-    let prefix = Path { segments: path.segments.get(..count)?.to_vec(), place: path.place };
+    let prefix = Path { segments: path.segments.get(..count)?.to_vec(), position: path.position };
     Some(MessageReference {
         host: robot.to_owned(),
-        word: word.completed(world.map(|world| &world.vocabulary)),
+        name: word.completed(world.map(|world| &world.vocabulary)),
         prefix,
     })
 }

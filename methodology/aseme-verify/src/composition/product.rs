@@ -36,7 +36,7 @@ pub(crate) fn passages(robots: &[ComposedRobot]) -> Vec<MessageRoute> {
             for (sent_message, sent) in sender.sent.iter().enumerate() {
                 let is_same = |&received: &usize| {
                     let called = &receiver.received[received].called;
-                    called.host == sender.host && called.word.means(&sent.word)
+                    called.host == sender.host && called.name.means(&sent.name)
                 };
                 let received_messages: Vec<usize> = (0..receiver.received.len()).filter(is_same).collect();
                 if received_messages.is_empty() {
@@ -234,16 +234,16 @@ impl<'a> CompositionSearch<'a> {
 
     fn own_steps(&mut self, global: &GlobalState, robot: usize, found: &mut Vec<GlobalSuccessor>) {
         let behaviours = self.found.behaviours;
-        for &way in &behaviours[robot].graph.ways[global.classes[robot]] {
-            let interface = behaviours[robot].step_interface(&way);
+        for &edge in &behaviours[robot].graph.edges[global.classes[robot]] {
+            let interface = behaviours[robot].step_interface(&edge);
             let comes_by_channel = interface.receives.is_some_and(|message| self.is_routed(robot, message));
             if comes_by_channel || !self.found.contents.allow(robot, &interface.conditions, &global.newest) {
                 continue;
             }
-            let (global, crowded) = self.apply_step(global.clone(), robot, way);
+            let (global, crowded) = self.apply_step(global.clone(), robot, edge);
             found.push(GlobalSuccessor {
                 global,
-                by: GlobalEvent::Step { robot, way },
+                by: GlobalEvent::Step { robot, way: edge },
                 is_dropped: false,
                 crowded,
             });
@@ -267,18 +267,18 @@ impl<'a> CompositionSearch<'a> {
             found.push(GlobalSuccessor { global, by, is_dropped: false, crowded: None });
         }
         there.newest[passage] = content;
-        let ways = self.receiving_steps(&there, passage);
-        if ways.is_empty() {
+        let edges = self.receiving_steps(&there, passage);
+        if edges.is_empty() {
             let (global, by) = (there, GlobalEvent::Arrival { passage, way: None });
             found.push(GlobalSuccessor { global, by, is_dropped: false, crowded: None });
             return;
         }
         let (behaviours, to) = (self.found.behaviours, self.found.passages[passage].to);
-        for way in ways {
-            let interface = behaviours[to].step_interface(&way);
+        for edge in edges {
+            let interface = behaviours[to].step_interface(&edge);
             if self.found.contents.allow(to, &interface.conditions, &there.newest) {
-                let (global, crowded) = self.apply_step(there.clone(), to, way);
-                let by = GlobalEvent::Arrival { passage, way: Some(way) };
+                let (global, crowded) = self.apply_step(there.clone(), to, edge);
+                let by = GlobalEvent::Arrival { passage, way: Some(edge) };
                 found.push(GlobalSuccessor { global, by, is_dropped: interface.drops, crowded });
             }
         }
@@ -289,8 +289,8 @@ impl<'a> CompositionSearch<'a> {
         let &MessageRoute { to, waited, .. } = &self.found.passages[passage];
         let behaviour = &self.found.behaviours[to];
         let receives =
-            |way: &&LabelledEdge| waited.is_some() && behaviour.step_interface(way).receives == waited;
-        behaviour.graph.ways[global.classes[to]].iter().filter(receives).copied().collect()
+            |edge: &&LabelledEdge| waited.is_some() && behaviour.step_interface(edge).receives == waited;
+        behaviour.graph.edges[global.classes[to]].iter().filter(receives).copied().collect()
     }
 
     /// Whether the chart already holds a message of the kind, so that it is offered no other. A
@@ -307,12 +307,12 @@ impl<'a> CompositionSearch<'a> {
         &mut self,
         mut global: GlobalState,
         robot: usize,
-        way: LabelledEdge,
+        edge: LabelledEdge,
     ) -> (GlobalState, Option<usize>) {
         let behaviours = self.found.behaviours;
-        global.classes[robot] = way.to;
+        global.classes[robot] = edge.to;
         let mut crowded = None;
-        for (message, settings) in &behaviours[robot].step_interface(&way).sends {
+        for (message, settings) in &behaviours[robot].step_interface(&edge).sends {
             crowded = crowded.or(self.send(&mut global, robot, *message, settings));
         }
         (global, crowded)
@@ -380,11 +380,11 @@ impl GlobalProduct<'_> {
         let mut text = String::new();
         for happening in way {
             match *happening {
-                GlobalEvent::Step { robot, way } => self.write_step(robot, way, &mut at, &mut text),
+                GlobalEvent::Step { robot, way: edge } => self.write_step(robot, edge, &mut at, &mut text),
                 GlobalEvent::Arrival { passage, way } => {
                     let &MessageRoute { from, sent_message, to, .. } = &self.passages[passage];
                     let from = &self.robots[from];
-                    let message = from.sent[sent_message].word.name();
+                    let message = from.sent[sent_message].name.name();
                     text += &format!("# `{message}` of {} comes to {}\n", from.name, self.robots[to].name);
                     if let Some(way) = way {
                         self.write_step(to, way, &mut at, &mut text);
@@ -392,7 +392,7 @@ impl GlobalProduct<'_> {
                 }
                 GlobalEvent::Loss { passage } => {
                     let MessageRoute { from, sent_message, to, .. } = &self.passages[passage];
-                    let message = self.robots[*from].sent[*sent_message].word.name();
+                    let message = self.robots[*from].sent[*sent_message].name.name();
                     let (from, to) = (&self.robots[*from].name, &self.robots[*to].name);
                     text += &format!("# `{message}` of {from} to {to} is lost\n");
                 }
@@ -401,12 +401,12 @@ impl GlobalProduct<'_> {
         text
     }
 
-    fn write_step(&self, robot: usize, way: LabelledEdge, at: &mut [usize], text: &mut String) {
+    fn write_step(&self, robot: usize, edge: LabelledEdge, at: &mut [usize], text: &mut String) {
         let (behaviour, name) = (&self.behaviours[robot], &self.robots[robot].name);
-        let (steps, to) = behaviour.steps(at[robot], way.observable, way.to);
+        let (steps, to) = behaviour.steps(at[robot], edge.observable, edge.to);
         at[robot] = to;
         let trace: Trace = behaviour.found.trace_along(&steps);
-        let is_silent = way.observable == Observable::Nothing;
+        let is_silent = edge.observable == Observable::Nothing;
         for step in trace
             .steps()
             .iter()
@@ -414,8 +414,8 @@ impl GlobalProduct<'_> {
         {
             *text += &format!("{name}: {}", trace.text_of(step));
         }
-        for (message, _) in &behaviour.step_interface(&way).sends {
-            *text += &format!("  # says `{}`\n", self.robots[robot].sent[*message].word.name());
+        for (message, _) in &behaviour.step_interface(&edge).sends {
+            *text += &format!("  # says `{}`\n", self.robots[robot].sent[*message].name.name());
         }
     }
 }

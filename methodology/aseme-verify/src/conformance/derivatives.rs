@@ -54,7 +54,7 @@ const MAX_RESIDUALS: usize = 50_000;
 /// The residuals of the formulas of a role.
 pub(crate) struct Language {
     expressions: Vec<LanguageTerm>,
-    places: BTreeMap<LanguageTerm, Residual>,
+    residuals: BTreeMap<LanguageTerm, Residual>,
     nullable: Vec<bool>,
     /// Whether each residual has no end.
     unending: Vec<bool>,
@@ -79,7 +79,7 @@ impl Language {
     pub(crate) fn with_cut(liveness: &Liveness, cut: BTreeSet<String>) -> Option<(Language, Residual)> {
         let mut language = Language {
             expressions: Vec::new(),
-            places: BTreeMap::new(),
+            residuals: BTreeMap::new(),
             nullable: Vec::new(),
             unending: Vec::new(),
             letters: Vec::new(),
@@ -252,7 +252,7 @@ impl Language {
     }
 
     fn intern(&mut self, expression: LanguageTerm) -> Residual {
-        if let Some(&rest) = self.places.get(&expression) {
+        if let Some(&rest) = self.residuals.get(&expression) {
             return rest;
         }
         let null = |rest: Residual| self.nullable[rest.0 as usize];
@@ -279,7 +279,7 @@ impl Language {
         self.expressions.push(expression.clone());
         self.nullable.push(nullable);
         self.unending.push(unending);
-        self.places.insert(expression, rest);
+        self.residuals.insert(expression, rest);
         rest
     }
 

@@ -36,7 +36,7 @@ pub(crate) struct Graph {
     /// Whether the chart has ended in each state.
     pub(crate) ends: Vec<bool>,
     /// The edges out of each state.
-    pub(crate) ways: Vec<Vec<LabelledEdge>>,
+    pub(crate) edges: Vec<Vec<LabelledEdge>>,
 }
 
 /// The signature of a state: a bit for each pair of observation and target class.
@@ -52,15 +52,15 @@ const MOST_ROUNDS: usize = 200;
 impl Graph {
     /// The graph of an exploration.
     pub(crate) fn of(found: &Exploration, shows: impl Fn(usize) -> Observable) -> Graph {
-        let mut ways = vec![Vec::new(); found.states().len()];
+        let mut edges = vec![Vec::new(); found.states().len()];
         for (index, edge) in found.edges().iter().enumerate() {
             let shows = shows(index);
             if shows != Observable::Nothing || edge.from != edge.to {
-                ways[edge.from].push(LabelledEdge { observable: shows, to: edge.to, edge: index });
+                edges[edge.from].push(LabelledEdge { observable: shows, to: edge.to, edge: index });
             }
         }
         let ends = found.states().iter().map(|state| state.status == Status::Finished).collect();
-        Graph { initial: found.initial().collect(), ends, ways }
+        Graph { initial: found.initial().collect(), ends, edges }
     }
 
     /// An equivalent graph with fewer states: the quotient by branching bisimilarity. `None` if too
@@ -97,20 +97,20 @@ impl Graph {
 
     fn signatures(&self, classes: &[usize]) -> Vec<Signature> {
         let mut numbers = BTreeMap::new();
-        let mut before: Vec<Vec<usize>> = vec![Vec::new(); self.ways.len()];
-        let mut own = vec![Vec::new(); self.ways.len()];
-        for (from, ways) in self.ways.iter().enumerate() {
-            for way in ways {
-                let class = classes[way.to];
-                if way.observable == Observable::Nothing && class == classes[from] {
-                    before[way.to].push(from);
+        let mut before: Vec<Vec<usize>> = vec![Vec::new(); self.edges.len()];
+        let mut own = vec![Vec::new(); self.edges.len()];
+        for (from, edges) in self.edges.iter().enumerate() {
+            for edge in edges {
+                let class = classes[edge.to];
+                if edge.observable == Observable::Nothing && class == classes[from] {
+                    before[edge.to].push(from);
                 } else {
                     let number = numbers.len();
-                    own[from].push(*numbers.entry((way.observable, class)).or_insert(number));
+                    own[from].push(*numbers.entry((edge.observable, class)).or_insert(number));
                 }
             }
         }
-        let mut signatures = vec![vec![0; numbers.len().div_ceil(64)]; self.ways.len()];
+        let mut signatures = vec![vec![0; numbers.len().div_ceil(64)]; self.edges.len()];
         for (signature, own) in signatures.iter_mut().zip(own) {
             own.into_iter().for_each(|number: usize| signature[number / 64] |= 1 << (number % 64));
         }
@@ -122,7 +122,7 @@ impl Graph {
     pub(crate) fn of_classes(&self, classes: &[usize], count: usize) -> Graph {
         let mut ways: Vec<BTreeMap<(Observable, usize), usize>> = vec![BTreeMap::new(); count];
         let mut ends = vec![false; count];
-        for (from, out) in self.ways.iter().enumerate() {
+        for (from, out) in self.edges.iter().enumerate() {
             let class = classes[from];
             ends[class] = self.ends[from];
             for way in
@@ -138,7 +138,7 @@ impl Graph {
         Graph {
             initial,
             ends,
-            ways: ways.into_iter().map(|ways| ways.into_iter().map(way).collect()).collect(),
+            edges: ways.into_iter().map(|ways| ways.into_iter().map(way).collect()).collect(),
         }
     }
 }

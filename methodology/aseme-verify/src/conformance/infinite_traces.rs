@@ -58,7 +58,7 @@ pub(crate) fn endlessly(
 
 /// The product of the chart and the residuals of its formulas.
 struct LoopProduct {
-    places: Vec<LoopProductState>,
+    states: Vec<LoopProductState>,
     numbers: BTreeMap<LoopProductState, usize>,
     next: Vec<Vec<LoopProductStep>>,
 }
@@ -73,23 +73,23 @@ struct LoopComponents {
 impl LoopProduct {
     /// `None` if it is too large.
     fn new(graph: &Graph, language: &mut Language, all: Residual) -> Option<LoopProduct> {
-        let mut product = LoopProduct { places: Vec::new(), numbers: BTreeMap::new(), next: Vec::new() };
+        let mut product = LoopProduct { states: Vec::new(), numbers: BTreeMap::new(), next: Vec::new() };
         for &state in &graph.initial {
             product.number((state, all));
         }
-        while let Some(&(state, rest)) = product.places.get(product.next.len()) {
-            if product.places.len() > MAX_PAIRS || language.is_too_large() {
+        while let Some(&(state, rest)) = product.states.get(product.next.len()) {
+            if product.states.len() > MAX_PAIRS || language.is_too_large() {
                 return None;
             }
             let mut steps = Vec::new();
-            for way in &graph.ways[state] {
-                match way.observable {
+            for edge in &graph.edges[state] {
+                match edge.observable {
                     Observable::Nothing => {
-                        steps.push((product.number((way.to, rest)), (true, BTreeSet::new())));
+                        steps.push((product.number((edge.to, rest)), (true, BTreeSet::new())));
                     }
                     Observable::Letter(letter) => {
                         for step in language.steps(rest, letter) {
-                            steps.push((product.number((way.to, step.rest)), (step.recurs, step.begun)));
+                            steps.push((product.number((edge.to, step.rest)), (step.recurs, step.begun)));
                         }
                     }
                     Observable::Other => {}
@@ -101,9 +101,9 @@ impl LoopProduct {
     }
 
     fn number(&mut self, place: LoopProductState) -> usize {
-        let number = *self.numbers.entry(place).or_insert(self.places.len());
-        if number == self.places.len() {
-            self.places.push(place);
+        let number = *self.numbers.entry(place).or_insert(self.states.len());
+        if number == self.states.len() {
+            self.states.push(place);
         }
         number
     }
@@ -118,7 +118,7 @@ impl LoopProduct {
         let mut begun = vec![BTreeSet::new(); count];
         for (from, steps) in self.next.iter().enumerate() {
             for (to, (recurs, numbers)) in steps {
-                let is_owed = language.owed_loops(self.places[from].1).is_some();
+                let is_owed = language.owed_loops(self.states[from].1).is_some();
                 if *recurs && is_owed && of_place[from] == of_place[*to] {
                     begun[of_place[from]].extend(numbers);
                 }
@@ -136,19 +136,19 @@ impl LoopProduct {
         turns: &LoopComponents,
         may_end_early: bool,
     ) -> Vec<bool> {
-        let mut before: Vec<Vec<usize>> = vec![Vec::new(); self.places.len()];
+        let mut before: Vec<Vec<usize>> = vec![Vec::new(); self.states.len()];
         for (from, steps) in self.next.iter().enumerate() {
             steps.iter().for_each(|(to, _)| before[*to].push(from));
         }
         let is_met = |place: usize| {
-            let (state, rest) = self.places[place];
+            let (state, rest) = self.states[place];
             let has_ended = graph.ends[state] && (may_end_early || language.may_end(rest));
             // without required loops the chart may be silent forever; whether it could end is
             // checked elsewhere
             let is_satisfied = |owed: BTreeSet<LoopId>| owed.is_subset(&turns.begun[turns.of_place[place]]);
             has_ended || language.owed_loops(rest).is_some_and(is_satisfied)
         };
-        let mut met: Vec<bool> = (0..self.places.len()).map(is_met).collect();
+        let mut met: Vec<bool> = (0..self.states.len()).map(is_met).collect();
         let mut open: Vec<usize> = (0..met.len()).filter(|&place| met[place]).collect();
         while let Some(place) = open.pop() {
             for &earlier in &before[place] {
@@ -167,7 +167,7 @@ impl LoopProduct {
         let (mut seen, mut open): (BTreeSet<usize>, Vec<usize>) = (first.iter().copied().collect(), first);
         let (mut owed, mut begun) = (BTreeSet::new(), BTreeSet::new());
         while let Some(place) = open.pop() {
-            owed.extend(language.owed_loops(self.places[place].1).unwrap_or_default());
+            owed.extend(language.owed_loops(self.states[place].1).unwrap_or_default());
             begun.extend(&turns.begun[turns.of_place[place]]);
             open.extend(self.next[place].iter().map(|(to, _)| *to).filter(|to| seen.insert(*to)));
         }

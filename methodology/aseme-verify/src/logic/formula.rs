@@ -167,7 +167,7 @@ impl ConditionReader<'_> {
             let condition = if is_first { Polarity::True } else { Polarity::False };
             let kind =
                 ExpressionKind::Compare(Box::new(replaced(left)), comparison, Box::new(replaced(right)));
-            let rest = Expression { kind, place: left.place };
+            let rest = Expression { kind, position: left.position };
             NegationNormalForm::All(vec![
                 self.formula(&piecewise.is_first, condition),
                 self.formula(&rest, wanted),
@@ -224,7 +224,7 @@ struct PiecewiseCall<'e> {
 impl<'e> PiecewiseCall<'e> {
     fn of(part: &'e Expression) -> Option<PiecewiseCall<'e>> {
         let ExpressionKind::Call(name, arguments) = &part.kind else { return None };
-        let made = |kind| Expression { kind, place: part.place };
+        let made = |kind| Expression { kind, position: part.position };
         let (first, comparison, second) = match (name.text.as_str(), arguments.as_slice()) {
             ("abs", [operand]) => {
                 let negative = made(ExpressionKind::Negative(Box::new(operand.clone())));

@@ -33,7 +33,7 @@ pub(crate) fn of_transition(making: &mut MutantCollector<'_>, id: TransitionId) 
 /// timer that nothing starts would not compile.
 fn keep_known(chart: &mut Statechart, id: TransitionId, action: Action) {
     let Transition { source, target, .. } = *chart.transition(id);
-    let never = Expression { kind: ExpressionKind::Bool(false), place: action.place };
+    let never = Expression { kind: ExpressionKind::Bool(false), position: action.position };
     let expression = TransitionExpression { trigger: None, guard: Some(never), actions: vec![action] };
     chart.connect(Transition { expression, ..Transition::new(source, target) });
 }

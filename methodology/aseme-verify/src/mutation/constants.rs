@@ -31,13 +31,13 @@ pub(crate) fn all(making: &mut MutantCollector<'_>) {
     for (_, transition) in making.chart.transitions() {
         transition.expression.guard.iter().for_each(|guard| names(guard, &mut named));
     }
-    let places = places(making);
+    let spans = places(making);
     for (place, constant) in making.chart.constants.iter().enumerate() {
         let ConstantValue::Number(value) = constant.value else { continue };
         if !named.contains(&constant.name) {
             continue;
         }
-        let span = places.iter().find(|(name, _)| *name == constant.name).map(|(_, span)| *span);
+        let span = spans.iter().find(|(name, _)| *name == constant.name).map(|(_, span)| *span);
         for other in around(value) {
             let mut chart = making.chart.clone();
             chart.constants[place].value = ConstantValue::Number(other);

@@ -86,7 +86,7 @@ fn negated(condition: &Expression) -> Expression {
         }
         _ => ExpressionKind::Not(Box::new(condition.clone())),
     };
-    Expression { kind, place: condition.place }
+    Expression { kind, position: condition.position }
 }
 
 const fn neighbour(comparison: Comparison) -> Comparison {
@@ -146,7 +146,7 @@ fn compared(
     };
     GuardVariant {
         kind: MutationKind::Comparison,
-        guard: Expression { kind, place: condition.place },
+        guard: Expression { kind, position: condition.position },
         wanted,
     }
 }
@@ -156,7 +156,7 @@ fn joined(condition: &Expression, operands: &[Expression]) -> Vec<GuardVariant> 
     let is_and = matches!(condition.kind, ExpressionKind::And(_));
     let join = |operands: Vec<Expression>, all: bool| {
         let kind = if all { ExpressionKind::And(operands) } else { ExpressionKind::Or(operands) };
-        Expression { kind, place: condition.place }
+        Expression { kind, position: condition.position }
     };
     let dropped = operands.iter().enumerate().map(|(place, operand)| {
         let mut rest = operands.to_vec();
@@ -208,11 +208,11 @@ fn decimal(value: f64, like: &Expression) -> Expression {
 }
 
 fn plain(kind: ExpressionKind, like: &Expression) -> Expression {
-    Expression { kind, place: like.place }
+    Expression { kind, position: like.position }
 }
 
 fn negative(number: Expression) -> Expression {
-    Expression { place: number.place, kind: ExpressionKind::Negative(Box::new(number)) }
+    Expression { position: number.position, kind: ExpressionKind::Negative(Box::new(number)) }
 }
 
 /// A condition with one of its [parts](Expression::parts) replaced.

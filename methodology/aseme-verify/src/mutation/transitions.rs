@@ -53,7 +53,7 @@ fn removed(making: &mut MutantCollector<'_>, id: TransitionId) {
         change: String::from("it is never taken"),
         wanted: String::from("a case in which it is taken"),
     };
-    let never = Expression { kind: ExpressionKind::Bool(false), place: TextPosition::default() };
+    let never = Expression { kind: ExpressionKind::Bool(false), position: TextPosition::default() };
     making.transition(id, mutation, |it| it.expression.guard = Some(never));
 }
 
@@ -76,7 +76,7 @@ fn priority(making: &mut MutantCollector<'_>, id: TransitionId) {
             changed.transition_mut(later).priority = high;
         }
     }
-    let span = making.places.get(id.0 as usize).copied().unwrap_or_default();
+    let span = making.spans.get(id.0 as usize).copied().unwrap_or_default();
     making.add(
         &format!("priority {} {}", id.0, later.0),
         (first, making.names.transition_path(id)),

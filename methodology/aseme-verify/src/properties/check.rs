@@ -102,7 +102,7 @@ fn judged(
     let name = &property.name;
     let (answer, states) = explored(abstraction, bound, settings);
     let judgement = |outcome| PropertyResult { name: name.clone(), outcome, states };
-    let place = property.formula.span();
+    let span = property.formula.span();
     match answer {
         ExplorationVerdict::Holds => (judgement(PropertyOutcome::Holds), None),
         ExplorationVerdict::Violated(trace, is_circle) => {
@@ -111,21 +111,21 @@ fn judged(
                 true => "the trace shows a run that repeats forever without the required step",
                 false => "the trace shows a run that violates it",
             };
-            let diagnostic = Diagnostic::error("E0870", place, message).with_hint(hint);
+            let diagnostic = Diagnostic::error("E0870", span, message).with_hint(hint);
             (judgement(PropertyOutcome::Violated), Some(Finding { diagnostic, trace: Some(trace) }))
         }
         ExplorationVerdict::NotConfirmed(trace, why) => {
             let message =
                 format!("the property `{name}` is not decided: a run against it is not confirmed: {why}");
             let hint = "the trace shows the run that the exploration has found";
-            let diagnostic = Diagnostic::error("E0872", place, message).with_hint(hint);
+            let diagnostic = Diagnostic::error("E0872", span, message).with_hint(hint);
             (judgement(PropertyOutcome::NotConfirmed), Some(Finding { diagnostic, trace: Some(trace) }))
         }
         ExplorationVerdict::NotDecided => {
             let message = format!("the property `{name}` is undecided after {states} states");
             let hint =
                 "no explored state violates it; raise the limit with `--states`, or split the property";
-            let diagnostic = Diagnostic::error("E0871", place, message).with_hint(hint);
+            let diagnostic = Diagnostic::error("E0871", span, message).with_hint(hint);
             (judgement(PropertyOutcome::NotDecided), Some(diagnostic.into()))
         }
     }
@@ -146,7 +146,7 @@ fn unread(bound: &BoundProperty, abstraction: &Abstraction) -> Vec<Diagnostic> {
             let text = path.text();
             if !known.contains(&text) {
                 let message = format!("no guard of the chart reads `{text}`");
-                let wrong = Diagnostic::warning("E0848", path.place.0, message);
+                let wrong = Diagnostic::warning("E0848", path.position.0, message);
                 found.push(match nearest(&text, known.iter().map(String::as_str)) {
                     Some(near) => wrong.with_hint(format!("did you mean `{near}`?")),
                     None => wrong.with_hint("name a field that a guard reads, or leave out `--unlinked`: the program knows all fields"),

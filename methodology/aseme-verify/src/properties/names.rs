@@ -48,7 +48,7 @@ pub fn bind(
         (Ok(_), Ok(_)) => Err(found),
         (Err(too_large), _) | (_, Err(too_large)) => {
             let message = format!("`{}` has more than {} {}", property.name, too_large.1, too_large.0);
-            let wrong = Diagnostic::error("E0844", property.place.0, message);
+            let wrong = Diagnostic::error("E0844", property.position.0, message);
             found.push(wrong.with_hint("split it into several properties"));
             Err(found)
         }
@@ -76,8 +76,8 @@ fn atom(
 
 /// Resolves the path of a state.
 pub(crate) fn state(name: &Name, chart: &CompiledChart) -> Result<NodeId, Diagnostic> {
-    let place = name.place.0;
-    let path = Path::parse(&name.text).map_err(|wrong| Diagnostic { span: place, ..wrong })?;
+    let span = name.position.0;
+    let path = Path::parse(&name.text).map_err(|wrong| Diagnostic { span, ..wrong })?;
     let statechart = chart.statechart();
     let is_state = |id: NodeId| {
         use NodeKind::{And, Basic, End, Or};
@@ -95,7 +95,7 @@ pub(crate) fn state(name: &Name, chart: &CompiledChart) -> Result<NodeId, Diagno
             let names =
                 states.iter().map(|&id| statechart.node(id).name.as_str()).filter(|it| !it.is_empty());
             let last = name.text.rsplit('/').next().unwrap_or_default();
-            let wrong = Diagnostic::error("E0845", place, message);
+            let wrong = Diagnostic::error("E0845", span, message);
             Err(match nearest(last, names) {
                 Some(near) => wrong.with_hint(format!("did you mean `{near}`?")),
                 None => wrong.with_hint("a state is named by a path of names from its formulas"),
@@ -105,7 +105,7 @@ pub(crate) fn state(name: &Name, chart: &CompiledChart) -> Result<NodeId, Diagno
             let message = format!("{} states are called `{}`", several.len(), name.text);
             let paths: Vec<String> =
                 several.iter().take(3).map(|&id| format!("`{}`", shortest_path(statechart, id))).collect();
-            let wrong = Diagnostic::error("E0845", place, message);
+            let wrong = Diagnostic::error("E0845", span, message);
             Err(wrong.with_hint(format!("say which: {}", paths.join(", "))))
         }
     }
@@ -123,7 +123,7 @@ pub(crate) fn event(
         return Ok(event);
     }
     let message = format!("the chart `{}` has no event `{}`", chart.statechart().name, name.text);
-    let wrong = Diagnostic::error("E0846", name.place.0, message);
+    let wrong = Diagnostic::error("E0846", name.position.0, message);
     let spelled = |event: EventId| spelling(event, chart, vocabulary);
     let known: Vec<String> = events.ids().map(spelled).collect();
     Err(match nearest(&name.text, known.iter().map(String::as_str)) {
@@ -134,7 +134,7 @@ pub(crate) fn event(
 
 /// The event of the chart that a trigger with this text denotes.
 fn awaited(name: &Name, chart: &CompiledChart, vocabulary: &TypeEnvironment) -> Option<EventId> {
-    let (expression, wrong) = parse_transition_at(&name.text, name.place.0.start);
+    let (expression, wrong) = parse_transition_at(&name.text, name.position.0.start);
     if wrong.iter().any(Diagnostic::is_error) {
         return None;
     }

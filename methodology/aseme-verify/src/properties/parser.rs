@@ -47,7 +47,7 @@ impl Parser<'_> {
     fn keep(&mut self, property: Property, properties: &mut Vec<Property>) {
         if properties.iter().any(|other| other.name == property.name) {
             let message = format!("another property is called `{}`", property.name);
-            let wrong = Diagnostic::error("E0843", property.place.0, message);
+            let wrong = Diagnostic::error("E0843", property.position.0, message);
             self.found.push(wrong.with_hint("each property of a file has a name of its own"));
         } else {
             properties.push(property);
@@ -94,7 +94,7 @@ impl Parser<'_> {
             return self.unexpected();
         }
         let name = self.text_of(Span::new(named.span.start + 1, named.span.end - 1)).to_owned();
-        Ok(Property { name, formula, place: TextPosition(begin.to(named.span)) })
+        Ok(Property { name, formula, position: TextPosition(begin.to(named.span)) })
     }
 
     /// Reports the token after a complete formula.
@@ -156,9 +156,9 @@ impl Parser<'_> {
             parts.push(part(self)?);
         }
         let ends = parts.first().zip(parts.last());
-        let place = ends
+        let position = ends
             .map_or_else(TextPosition::default, |(first, last)| TextPosition(first.span().to(last.span())));
-        Ok(PropertyFormula { kind: kind(parts), place })
+        Ok(PropertyFormula { kind: kind(parts), position })
     }
 
     fn single(&mut self) -> Parsed<PropertyFormula> {
@@ -174,7 +174,7 @@ impl Parser<'_> {
             _ => return self.missing(),
         };
         let end = self.tokens[self.next - 1].span;
-        Ok(PropertyFormula { kind, place: TextPosition(begin.span.to(end)) })
+        Ok(PropertyFormula { kind, position: TextPosition(begin.span.to(end)) })
     }
 
     fn parenthesised(&mut self, open: Span) -> Parsed<PropertyFormula> {
@@ -251,7 +251,7 @@ impl Parser<'_> {
         };
         self.next += 1;
         let text = self.text_of(inside).to_owned();
-        Ok(kind(Name { text, place: TextPosition(span) }))
+        Ok(kind(Name { text, position: TextPosition(span) }))
     }
 
     fn condition(&mut self, span: Span) -> Parsed<Expression> {
@@ -301,9 +301,9 @@ impl Parser<'_> {
         match milliseconds(digits, &unit) {
             Some(bound) => Ok(Some(Duration::from_millis(bound))),
             None => {
-                let place = if digits.is_empty() { begin } else { given };
+                let span = if digits.is_empty() { begin } else { given };
                 let message = "a bound is a whole number of milliseconds, from 1 ms to a day".into();
-                self.refuse("E0847", place, message, "write `within 2 s` or `within 500 ms`")
+                self.refuse("E0847", span, message, "write `within 2 s` or `within 500 ms`")
             }
         }
     }
@@ -396,8 +396,8 @@ fn spanning(
     right: PropertyFormula,
     kind: impl FnOnce(Box<PropertyFormula>, Box<PropertyFormula>) -> PropertyFormulaKind,
 ) -> PropertyFormula {
-    let place = TextPosition(left.span().to(right.span()));
-    PropertyFormula { kind: kind(Box::new(left), Box::new(right)), place }
+    let position = TextPosition(left.span().to(right.span()));
+    PropertyFormula { kind: kind(Box::new(left), Box::new(right)), position }
 }
 
 /// Converts `2` or `0.5` with the unit `s`, or `500` with `ms`.

@@ -59,7 +59,7 @@ pub(crate) fn violation(
         contrary,
         has_idle,
         from,
-        places: Vec::new(),
+        positions: Vec::new(),
         numbers: BTreeMap::new(),
         next: Vec::new(),
         limit,
@@ -139,7 +139,7 @@ struct ProductSearch<'a> {
     /// Whether idle regions were left out: then the chart is never stable.
     has_idle: bool,
     from: Vec<Vec<usize>>,
-    places: Vec<ProductPosition>,
+    positions: Vec<ProductPosition>,
     numbers: BTreeMap<(usize, Clause), usize>,
     /// The successors of each product state and the steps to them.
     next: Vec<Vec<(usize, usize)>>,
@@ -168,7 +168,7 @@ impl<'a> ProductSearch<'a> {
             }
         }
         while let Some(place) = open.pop_front() {
-            let ProductPosition { state, clause, .. } = self.places[place];
+            let ProductPosition { state, clause, .. } = self.positions[place];
             if self.may_end(state) && !clause.awaits(self.contrary) {
                 let run = Violation { prefix: self.path_to(Some(place)), cycle: Vec::new() };
                 let alternatives = self.alternatives_to(Some(place));
@@ -217,7 +217,7 @@ impl<'a> ProductSearch<'a> {
                 }
             }
             let clause = clause.shifted(elapsed, self.contrary);
-            let count = self.places.len();
+            let count = self.positions.len();
             let place = match self.numbers.entry((to, clause)) {
                 Entry::Occupied(known) => *known.get(),
                 Entry::Vacant(_) if count == self.limit => {
@@ -226,7 +226,7 @@ impl<'a> ProductSearch<'a> {
                 }
                 Entry::Vacant(new) => {
                     new.insert(count);
-                    self.places.push(ProductPosition { state: to, clause, predecessor: (from, step) });
+                    self.positions.push(ProductPosition { state: to, clause, predecessor: (from, step) });
                     self.next.push(Vec::new());
                     open.push_back(count);
                     count
@@ -252,7 +252,7 @@ impl<'a> ProductSearch<'a> {
     fn alternatives_to(&self, mut place: Option<usize>) -> Vec<Vec<usize>> {
         let mut found = Vec::new();
         while let Some(at) = place {
-            let (before, step) = self.places[at].predecessor;
+            let (before, step) = self.positions[at].predecessor;
             found.push(before.map_or_else(|| vec![step], |before| self.alternatives(before, at, step)));
             place = before;
         }
@@ -263,7 +263,7 @@ impl<'a> ProductSearch<'a> {
     fn path_to(&self, mut place: Option<usize>) -> Vec<usize> {
         let mut way = Vec::new();
         while let Some(at) = place {
-            let (before, step) = self.places[at].predecessor;
+            let (before, step) = self.positions[at].predecessor;
             way.push(step);
             place = before;
         }
@@ -311,7 +311,7 @@ impl CycleSearch<'_> {
         let mut stops = Vec::new();
         for (obligation, &(term, _)) in search.contrary.obligations.iter().enumerate() {
             if matches!(search.contrary.terms[term], Subformula::Until { bound: None, .. }) {
-                let met = |place: &&usize| !search.places[**place].clause.has(obligation);
+                let met = |place: &&usize| !search.positions[**place].clause.has(obligation);
                 stops.push(CycleStop::Place(*inside.iter().find(met)?));
             }
         }
@@ -327,7 +327,7 @@ impl CycleSearch<'_> {
             stops.push(CycleStop::Step(from, to, step));
             return Some(stops);
         }
-        let pending = |place: usize| &search.found.states()[search.places[place].state].pending;
+        let pending = |place: usize| &search.found.states()[search.positions[place].state].pending;
         let first = *inside.first()?;
         let always =
             pending(first).iter().filter(|it| inside.iter().all(|&place| pending(place).contains(it)));

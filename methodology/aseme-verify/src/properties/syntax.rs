@@ -13,7 +13,7 @@ pub struct Property {
     /// Its formula.
     pub formula: PropertyFormula,
     /// Its position in the source.
-    pub place: TextPosition,
+    pub position: TextPosition,
 }
 
 /// A formula or a part of it.
@@ -22,13 +22,13 @@ pub struct PropertyFormula {
     /// Its kind and operands.
     pub kind: PropertyFormulaKind,
     /// Its position in the source.
-    pub place: TextPosition,
+    pub position: TextPosition,
 }
 
 impl PropertyFormula {
     /// The span of the formula.
     pub fn span(&self) -> Span {
-        self.place.0
+        self.position.0
     }
 }
 

@@ -34,7 +34,7 @@ pub(crate) fn guarded(chart: &Iac, part: usize, found: &mut Conformance) {
             let name = names.name(NodeId(way.target as u32));
             let message = format!("`{name}` is always executed: its transition has no guard");
             let hint = "add a guard";
-            found.report("E0866", way.place.0, message, hint);
+            found.report("E0866", way.position.0, message, hint);
         }
     }
 }
@@ -48,7 +48,7 @@ pub(crate) fn contained(player: &Iac, place: usize, eac: &Iac, part: usize, foun
         Err((wanted, there)) => {
             let message = format!("`{name}` differs from the protocol: {there} instead of {wanted}");
             let hint = "copy the formula of the participant";
-            return found.report("E0862", player.nodes[place].place.0, message, hint);
+            return found.report("E0862", player.nodes[place].position.0, message, hint);
         }
     };
     inside(player, eac, &pairs, found);
@@ -68,7 +68,7 @@ pub(crate) fn contained(player: &Iac, place: usize, eac: &Iac, part: usize, foun
         };
         if let Some(guard) = guard(way).filter(|guard| !is_exit(guard)) {
             let message = format!("`{name}` is left when `{guard}`, which is not an outcome of the protocol");
-            found.report("E0865", way.place.0, message, "make it an outcome, or remove the exit");
+            found.report("E0865", way.position.0, message, "make it an outcome, or remove the exit");
         }
     }
 }
@@ -97,7 +97,7 @@ fn inside(player: &Iac, eac: &Iac, pairs: &BTreeMap<usize, usize>, found: &mut C
                     format!("the protocol has `{}`, but the player does not", written(&their_names, theirs));
                 found.report(
                     "E0867",
-                    player.nodes[source].place.0,
+                    player.nodes[source].position.0,
                     message,
                     "merge the protocol's chart again",
                 );
@@ -107,7 +107,7 @@ fn inside(player: &Iac, eac: &Iac, pairs: &BTreeMap<usize, usize>, found: &mut C
     // one from the part to itself is a way into it
     for more in there.into_iter().filter(|it| !(it.source == it.target && is_top(it.source))) {
         let message = format!("the player has `{}`, but the protocol does not", written(&own_names, more));
-        found.report("E0867", more.place.0, message, "merge the protocol's chart again");
+        found.report("E0867", more.position.0, message, "merge the protocol's chart again");
     }
 }
 

@@ -60,7 +60,7 @@ pub(crate) fn in_whole(
             );
             return found.report(
                 "E0869",
-                player.nodes[place].place.0,
+                player.nodes[place].position.0,
                 message,
                 "split it into several charts",
             );
@@ -69,7 +69,12 @@ pub(crate) fn in_whole(
             format!("`{}` executes `{done}` as `{name}` where the protocol does not allow it", player.name)
         }
     };
-    found.report("E0867", player.nodes[place].place.0, message, "a transition enters the middle of the part");
+    found.report(
+        "E0867",
+        player.nodes[place].position.0,
+        message,
+        "a transition enters the middle of the part",
+    );
 }
 
 /// Maps the steps of a player to symbols of the protocol.

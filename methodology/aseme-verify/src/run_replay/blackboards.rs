@@ -91,7 +91,7 @@ impl RunClaim {
                 ExpressionKind::Present(path) => ExpressionKind::Present(unnumbered(path)),
                 _ => return None,
             };
-            Some(Expression { kind, place: part.place })
+            Some(Expression { kind, position: part.position })
         });
         RunClaim { written, condition, holds: true, step }
     }
@@ -200,12 +200,12 @@ impl<'a> ReplayHost<'a> {
             let is = |delivery: u32, present: bool| {
                 let path = numbered(message, &delivery.to_string());
                 let kind = if present { ExpressionKind::Present(path) } else { ExpressionKind::Absent(path) };
-                Expression { kind, place: message.place }
+                Expression { kind, position: message.position }
             };
             let deliveries: Vec<u32> = deliveries.iter().copied().collect();
             for pair in deliveries.windows(2) {
                 let kind = ExpressionKind::Or(vec![is(pair[1], true), is(pair[0], false)]);
-                claims.push(RunClaim::of(Expression { kind, place: message.place }, 0));
+                claims.push(RunClaim::of(Expression { kind, position: message.position }, 0));
             }
             let written = self.writes.iter().filter(|write| message_of(&write.assignment.target) == *message);
             for write in written {
@@ -226,7 +226,7 @@ impl<'a> ReplayHost<'a> {
                 ExpressionKind::Present(path) => self.presence(path, board, true),
                 _ => return None,
             };
-            Some(Expression { kind, place: part.place })
+            Some(Expression { kind, position: part.position })
         })
     }
 
@@ -276,7 +276,7 @@ impl<'a> ReplayHost<'a> {
             // nothing of it was published before
             let missing = numbered(message, "0");
             let kind = ExpressionKind::Absent(missing);
-            let claim = RunClaim::of(Expression { kind, place: message.place }, 0);
+            let claim = RunClaim::of(Expression { kind, position: message.position }, 0);
             let is_written = self.writes.iter().any(|write| message_of(&write.assignment.target) == *message);
             if !is_written && let Ok(mut log) = self.log.try_borrow_mut() {
                 log.claims.push(claim);
@@ -393,14 +393,14 @@ impl Host for ReplayHost<'_> {
 
 /// That a message of a part of an expression has arrived.
 fn present(message: &str, part: &Expression) -> Expression {
-    let place = part.place;
-    let segments = message.split('.').map(|text| Name { text: text.to_owned(), place }).collect();
-    Expression { kind: ExpressionKind::Present(Path { segments, place }), place }
+    let place = part.position;
+    let segments = message.split('.').map(|text| Name { text: text.to_owned(), position: place }).collect();
+    Expression { kind: ExpressionKind::Present(Path { segments, position: place }), position: place }
 }
 
 fn message_of(field: &Path) -> Path {
     let count = field.segments.len().saturating_sub(1).max(1);
-    Path { segments: field.segments.iter().take(count).cloned().collect(), place: field.place }
+    Path { segments: field.segments.iter().take(count).cloned().collect(), position: field.position }
 }
 
 fn numbered(path: &Path, number: &str) -> Path {

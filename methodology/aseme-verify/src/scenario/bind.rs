@@ -157,7 +157,7 @@ impl ScenarioBinder<'_> {
     }
 
     fn name(&self, span: Span) -> Name {
-        Name { text: self.text(span).to_owned(), place: TextPosition(span) }
+        Name { text: self.text(span).to_owned(), position: TextPosition(span) }
     }
 
     /// The parts between commas; there is at least one.
@@ -208,10 +208,10 @@ impl ScenarioBinder<'_> {
             let segments = self.text(part).split(ends_segment).map(|segment| {
                 let place = Span::new(start, start + segment.len());
                 start = place.end + 1;
-                Name { text: segment.trim_matches('`').to_owned(), place: TextPosition(place) }
+                Name { text: segment.trim_matches('`').to_owned(), position: TextPosition(place) }
             });
-            let path = Path { segments: segments.collect(), place: TextPosition(part) };
-            Action { kind: ActionKind::Publish(path), place: TextPosition(part) }
+            let path = Path { segments: segments.collect(), position: TextPosition(part) };
+            Action { kind: ActionKind::Publish(path), position: TextPosition(part) }
         };
         let actions: Vec<Action> = self.list(span).into_iter().map(publish).collect();
         let topic = |effect: &Effect| match effect {
@@ -230,7 +230,7 @@ impl ScenarioBinder<'_> {
         let is_data =
             |action: &&Action| !matches!(action.kind, ActionKind::Assign { .. } | ActionKind::Publish(_));
         if let Some(action) = actions.iter().find(is_data) {
-            let wrong = Diagnostic::error("E0894", action.place.0, format!("`{action}` is not a message"));
+            let wrong = Diagnostic::error("E0894", action.position.0, format!("`{action}` is not a message"));
             return Err(vec![
                 wrong.with_hint("write messages as `Message.field = value` or `publish.Message`"),
             ]);

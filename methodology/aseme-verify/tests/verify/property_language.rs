@@ -10,11 +10,11 @@ use yase::expression::{Name, TextPosition, parse_condition};
 use yase::{CompiledChart, Diagnostic, Source, TypeEnvironment};
 
 fn formula(kind: PropertyFormulaKind) -> PropertyFormula {
-    PropertyFormula { kind, place: TextPosition::default() }
+    PropertyFormula { kind, position: TextPosition::default() }
 }
 
 fn name(text: &str) -> Name {
-    Name { text: text.into(), place: TextPosition::default() }
+    Name { text: text.into(), position: TextPosition::default() }
 }
 
 fn atom() -> impl Strategy<Value = PropertyFormula> {
@@ -59,7 +59,7 @@ proptest! {
 
     #[test]
     fn printing_and_parsing_round_trips(formula in any_of(atom())) {
-        let property = Property { name: "it is so".into(), formula, place: TextPosition::default() };
+        let property = Property { name: "it is so".into(), formula, position: TextPosition::default() };
         let text = property.to_string();
         let (again, findings) = parse(&text);
         prop_assert_eq!(findings, [], "{}", text);
@@ -85,7 +85,7 @@ proptest! {
         run in prop::collection::vec((0..8_u64, 0..3_000_u64), 1..8)
     ) {
         let chart = chart("r = a || b || c");
-        let property = Property { name: "p".into(), formula: formula.clone(), place: TextPosition::default() };
+        let property = Property { name: "p".into(), formula: formula.clone(), position: TextPosition::default() };
         let plan = match bind(&property, &chart, &TypeEnvironment::default()) {
             Ok(bound) => bound.plan,
             Err(too_large) => {

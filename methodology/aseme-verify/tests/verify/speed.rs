@@ -12,7 +12,7 @@ fn a_large_role_is_checked() {
     let mut settings = CheckSettings::default();
     settings.states = 100;
     let report = check(&Source::new("large.srm", large()), &settings);
-    let what = report.what.clone().unwrap_or_default();
+    let what = report.kind.clone().unwrap_or_default();
     let nodes: usize = what.split(' ').next().and_then(|count| count.parse().ok()).unwrap_or(0);
     assert!(nodes >= 1_900, "{what}");
     let shadowed = report.findings.iter().filter(|finding| finding.diagnostic.code == "M07").count();

@@ -45,7 +45,7 @@ fn node_wish<'a>(lookup: &Lookup<'_>, path: &Path, entry: &'a LayoutEntry) -> Re
     RefinementTarget {
         text: &entry.text,
         span: entry.span,
-        thing: "state",
+        kind: "state",
         has_wildcard: path.has_wildcard(),
         named,
         near,
@@ -59,7 +59,7 @@ fn transitions(chart: &mut Statechart, entries: &[LayoutEntry]) -> Vec<Unmatched
     let of_transitions: Vec<(RefinementTarget<'_, TransitionId>, &LayoutEntry)> = entries
         .iter()
         .filter_map(|entry| match &entry.of {
-            LayoutTarget::Transition { source, target, beside } => {
+            LayoutTarget::Transition { source, target, parallel: beside } => {
                 Some((transition_wish(&lookup, &twins, (source, target), *beside, entry), entry))
             }
             LayoutTarget::State(_) => None,
@@ -88,7 +88,7 @@ fn transition_wish<'a>(
         false => Vec::new(),
     };
     let has_wildcard = source.has_wildcard() || target.has_wildcard();
-    RefinementTarget { text: &entry.text, span: entry.span, thing: "transition", has_wildcard, named, near }
+    RefinementTarget { text: &entry.text, span: entry.span, kind: "transition", has_wildcard, named, near }
 }
 
 /// The index of a transition among those with the same ends.

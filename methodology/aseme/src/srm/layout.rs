@@ -54,13 +54,13 @@ impl Reader {
         let beside = self.beside(blanked, Span::new(words, head.end));
         let (source, target, beside) = (source?, target?, beside?);
         Some(match scope {
-            None => LayoutTarget::Transition { source, target, beside },
+            None => LayoutTarget::Transition { source, target, parallel: beside },
             Some(scope) => {
                 let scope = scope?;
                 LayoutTarget::Transition {
                     source: source.within(&scope),
                     target: target.within(&scope),
-                    beside,
+                    parallel: beside,
                 }
             }
         })

@@ -240,7 +240,7 @@ fn trial_cost(
 /// The motion of a robot in its own frame, m and rad.
 pub(crate) fn moved(from: &State, to: &State) -> [f64; 3] {
     let (sin, cos) = libm::sincos(from.heading);
-    let (x, y) = (to.place[0] - from.place[0], to.place[1] - from.place[1]);
+    let (x, y) = (to.position[0] - from.position[0], to.position[1] - from.position[1]);
     let turn = libm::remainder(to.heading - from.heading, std::f64::consts::TAU);
     [cos * x + sin * y, cos * y - sin * x, turn]
 }

@@ -19,7 +19,7 @@ pub(crate) struct State {
     /// The measurements of the robot.
     pub(crate) motion: Motion,
     /// The position of the torso, m.
-    pub(crate) place: [f64; 3],
+    pub(crate) position: [f64; 3],
     /// Its heading, rad.
     pub(crate) heading: f64,
     /// The cosine of its inclination.
@@ -109,7 +109,7 @@ impl World {
                 gyro,
                 down: self.inclination.down(),
             },
-            place: three(rest),
+            position: three(rest),
             heading: numbers[rest + 3],
             upright: numbers[rest + 4],
             ball: [numbers[rest + 5], numbers[rest + 6]],

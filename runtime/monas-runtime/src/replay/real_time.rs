@@ -130,7 +130,7 @@ impl RealTimeReplay {
                     parts.push(ThreadReplay::new(
                         alone,
                         profile.clone(),
-                        ThreadPosition { place, charts, has_list, lists },
+                        ThreadPosition { chart: place, charts, has_list, lists },
                     )?);
                 }
             }
@@ -438,7 +438,7 @@ impl ThreadReplay {
 
     /// Earlier versions recorded all threads of an agent alike.
     fn is_of_thread(&self, record: &Cycle) -> bool {
-        match (self.thread.place, record.turn()) {
+        match (self.thread.chart, record.turn()) {
             (Some(_), Turn::None) => record.seen.is_empty(),
             (Some(place), _) => record.chart as usize == place,
             (None, _) => true,

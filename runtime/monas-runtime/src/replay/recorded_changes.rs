@@ -32,7 +32,7 @@ pub(crate) struct RecordedChanges {
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) struct ThreadPosition {
     /// The index of its chart; `None` for the list.
-    pub(crate) place: Option<usize>,
+    pub(crate) chart: Option<usize>,
     /// Number of charts of the agent.
     pub(crate) charts: usize,
     /// Whether the agent has a list.
@@ -44,7 +44,7 @@ pub(crate) struct ThreadPosition {
 impl ThreadPosition {
     /// The part of its agent under which it publishes.
     pub(crate) fn part(self) -> u16 {
-        part(self.place.unwrap_or(self.charts))
+        part(self.chart.unwrap_or(self.charts))
     }
 
     /// The list or chart of this thread out of an agent with the same number of charts; `None`
@@ -52,7 +52,7 @@ impl ThreadPosition {
     fn of(self, agent: PreparedAgent) -> Option<PreparedAgent> {
         let PreparedAgent { list, mut charts, .. } = agent;
         let is_same = charts.len() == self.charts;
-        let (list, charts) = match self.place.filter(|_| is_same) {
+        let (list, charts) = match self.chart.filter(|_| is_same) {
             Some(place) => (None, vec![charts.swap_remove(place)]),
             None => (list, Vec::new()),
         };
@@ -149,7 +149,7 @@ impl RecordedChanges {
     ) -> Result<(), Error> {
         let adds = matches!(changed.action(), Action::AddActivity | Action::LoadModule);
         let begins_list = changed.done && adds && !self.thread.has_list;
-        if begins_list && self.thread.place.is_none() {
+        if begins_list && self.thread.chart.is_none() {
             return Err(begun_late(&changed.agent, at));
         }
         let waits = matches!(repeated, ReplayedThread::Waiting(_));
@@ -327,7 +327,7 @@ impl AgentControl for ChangeReplayer<'_> {
     }
 
     fn apply(&mut self, _: &str, mut orders: AgentUpdate) -> Result<Vec<String>, Vec<String>> {
-        let ThreadPosition { place, charts, has_list, .. } = self.thread;
+        let ThreadPosition { chart: place, charts, has_list, .. } = self.thread;
         if let (ReplayedThread::Waiting(_), Some(list)) = (&self.repeated, orders.list.take()) {
             if self.is_unaffected {
                 return Err(vec!["the thread follows later".into()]);
@@ -335,7 +335,7 @@ impl AgentControl for ChangeReplayer<'_> {
             self.was_applied = true;
             return self.repeated.begin(*list).map(|()| Vec::new()).map_err(|error| vec![error.to_string()]);
         }
-        let own = orders.shares(has_list, charts).into_iter().find(|share| share.place == place);
+        let own = orders.shares(has_list, charts).into_iter().find(|share| share.chart == place);
         match own {
             Some(_) if self.is_unaffected => Err(vec!["the thread follows later".into()]),
             Some(share) => {

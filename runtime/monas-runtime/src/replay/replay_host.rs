@@ -81,7 +81,7 @@ pub(crate) struct ReplayHost {
     refused: Option<Error>,
     agents: Vec<ReplayedAgent>,
     /// The names of all agents, replayed or not, in the order of their turns.
-    places: Vec<String>,
+    turn_order: Vec<String>,
     /// Index in `places` of the agent whose turn it is.
     turn: Option<usize>,
     pub(crate) now: Timestamp,
@@ -93,7 +93,7 @@ pub(crate) struct ReplayHost {
 
 /// A replayed agent.
 pub(crate) struct ReplayedAgent {
-    place: usize,
+    turn: usize,
     pub(crate) instance: AgentInstance,
     /// Its recorded and replayed publications at the present timestamp.
     comparison: MomentComparison,
@@ -117,7 +117,11 @@ impl ReplayHost {
         let replayed = |member: super::super::agent_factory::PreparedAgent| {
             let place = places.binary_search(&member.name).unwrap_or_default();
             let window = MomentComparison::new(hub.host(), &member.name);
-            ReplayedAgent { place, instance: AgentInstance::new(member, Timestamp::ZERO), comparison: window }
+            ReplayedAgent {
+                turn: place,
+                instance: AgentInstance::new(member, Timestamp::ZERO),
+                comparison: window,
+            }
         };
         let agents = members.into_iter().map(replayed).collect();
         Ok(ReplayHost {
@@ -128,7 +132,7 @@ impl ReplayHost {
             returned_by: None,
             refused: None,
             agents,
-            places,
+            turn_order: places,
             turn: None,
             now: Timestamp::ZERO,
             is_setting_up: true,
@@ -143,7 +147,7 @@ impl ReplayHost {
 
     /// Index of an agent in the order of turns, replayed or not.
     pub(crate) fn place(&self, name: &str) -> Option<usize> {
-        self.places.binary_search_by(|other| other.as_str().cmp(name)).ok()
+        self.turn_order.binary_search_by(|other| other.as_str().cmp(name)).ok()
     }
 
     /// Processes a publication of an agent before any agent has run.
@@ -292,7 +296,7 @@ impl ReplayHost {
             return;
         }
         self.is_setting_up = false;
-        let place = self.agents[agent].place;
+        let place = self.agents[agent].turn;
         if self.turn == Some(place) {
             // It has had its turn, and gets another one after all others.
             self.run_due(Some(place), None, output);
@@ -322,7 +326,7 @@ impl ReplayHost {
     fn run_due(&mut self, after: Option<usize>, before: Option<usize>, output: &OutputCapture) {
         self.deliver_publications();
         for agent in 0..self.agents.len() {
-            let ReplayedAgent { place, instance, .. } = &self.agents[agent];
+            let ReplayedAgent { turn: place, instance, .. } = &self.agents[agent];
             let is_between =
                 after.is_none_or(|after| *place > after) && before.is_none_or(|before| *place < before);
             if is_between && instance.due(self.now) <= self.now {

@@ -120,9 +120,9 @@ fn scripts_know_where_they_stand_and_what_is_active() {
     ";
     let (mut machine, mut reader) = machine(&chart(text), Semantics::yase());
     let scripts: Vec<_> =
-        machine.chart().scripts().map(|script| (script.text, script.places.to_vec())).collect();
+        machine.chart().scripts().map(|script| (script.text, script.locations.to_vec())).collect();
     let a = reader.node("A");
-    let action = |place, index| ScriptLocation::Action(place, index);
+    let action = |location, index| ScriptLocation::Action(location, index);
     let (entry, way) = (ActionLocation::Entry(a), ActionLocation::Transition(TransitionId(1)));
     assert_eq!(
         scripts,

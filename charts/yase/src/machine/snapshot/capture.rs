@@ -130,8 +130,8 @@ impl Capture<'_> {
         records
             .filter(|(_, record)| record.is_known)
             .map(|(history, record)| HistoryRecord {
-                history: self.paths.place(self.chart, history.place),
-                nodes: record.places.iter().map(|&place| self.paths.place(self.chart, place)).collect(),
+                history: self.paths.place(self.chart, history.node),
+                nodes: record.nodes.iter().map(|&place| self.paths.place(self.chart, place)).collect(),
             })
             .collect()
     }

@@ -40,13 +40,13 @@ pub(crate) struct SnapshotRestorer<'a> {
     pub(crate) run: MachineState,
     pub(crate) issues: Vec<RestoreIssue>,
     paths: PathTable,
-    ways: BTreeMap<&'a [TransitionId], CompoundTransitionId>,
+    compounds: BTreeMap<&'a [TransitionId], CompoundTransitionId>,
 }
 
 impl<'a> SnapshotRestorer<'a> {
     fn new(chart: &'a CompiledChart) -> SnapshotRestorer<'a> {
         let (run, paths, ways) = (MachineState::new(chart), PathTable::new(chart), ways(chart));
-        SnapshotRestorer { chart, run, issues: Vec::new(), paths, ways }
+        SnapshotRestorer { chart, run, issues: Vec::new(), paths, compounds: ways }
     }
 
     fn run(mut self, snapshot: &Snapshot) -> Result<MachineState, RestoreError> {
@@ -161,7 +161,7 @@ impl<'a> SnapshotRestorer<'a> {
             let field = format!("history[{index}]");
             let Some(place) = self.place(&format!("{field}.history"), &record.history) else { continue };
             let histories = &self.chart.histories;
-            let Some(number) = histories.iter().position(|history| history.place == place) else {
+            let Some(number) = histories.iter().position(|history| history.node == place) else {
                 let text = format!("`{}` is not a HISTORY", record.history);
                 self.report_issue(RestoreIssueKind::Unknown, format!("{field}.history"), text);
                 continue;
@@ -172,7 +172,7 @@ impl<'a> SnapshotRestorer<'a> {
                 .filter_map(|(node, path)| self.place(&format!("{field}.nodes[{node}]"), path))
                 .collect();
             places.sort_unstable();
-            self.run.records[number] = HistoryValue { is_known: true, places };
+            self.run.records[number] = HistoryValue { is_known: true, nodes: places };
         }
     }
 
@@ -375,7 +375,7 @@ impl<'a> SnapshotRestorer<'a> {
     }
 
     fn way(&mut self, field: &str, way: &TransitionPath) -> Option<CompoundTransitionId> {
-        let found = self.paths.find_way(&self.ways, way);
+        let found = self.paths.find_way(&self.compounds, way);
         self.known(found, field, "compound transition", &way.join(", "))
     }
 

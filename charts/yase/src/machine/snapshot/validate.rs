@@ -166,9 +166,9 @@ impl SnapshotRestorer<'_> {
     fn records_are_configurations(&mut self) {
         let chart = self.chart;
         for (history, record) in chart.histories.iter().zip(self.run.records.clone()) {
-            let places = record.places.into_iter().collect();
+            let places = record.nodes.into_iter().collect();
             if record.is_known && !can_remember(chart, history, &places) {
-                let path = self.path(history.place);
+                let path = self.path(history.node);
                 self.report_contradiction(
                     "history",
                     format!("what `{path}` remembers was never active together"),

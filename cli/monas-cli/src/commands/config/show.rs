@@ -55,12 +55,12 @@ fn table(out: &mut dyn Write, entries: &[ResolvedEntry]) -> io::Result<()> {
 }
 
 fn object(entry: &ResolvedEntry) -> Value {
-    let position = entry.place.as_ref().map(|(source, span)| source.position(span.start));
+    let position = entry.location.as_ref().map(|(source, span)| source.position(span.start));
     json!({
         "path": entry.path,
         "value": entry.value,
         "layer": entry.layer.name(),
-        "file": entry.place.as_ref().map(|(source, _)| source.name.as_str()),
+        "file": entry.location.as_ref().map(|(source, _)| source.name.as_str()),
         "line": position.map(|(line, _)| line),
         "column": position.map(|(_, column)| column),
     })

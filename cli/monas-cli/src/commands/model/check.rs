@@ -137,7 +137,7 @@ fn text(
             report::write(console, Format::Text, std::slice::from_ref(&finding.diagnostic))?;
             finding::way_there(finding, console)?;
         }
-        if let Some(what) = report.what.as_ref().filter(|_| is_told && !report.has_errors()) {
+        if let Some(what) = report.kind.as_ref().filter(|_| is_told && !report.has_errors()) {
             writeln!(
                 console.out,
                 "{}: {what}{}{}, no errors",

@@ -63,8 +63,8 @@ fn explorable(path: &Path, format: Format) -> Result<Arc<CompiledChart>, Command
 }
 
 fn no_trace(error: ParseError, hint: &str, text: &Arc<Source>, format: Format) -> CommandFailure {
-    let place = line(&text.text, error.line);
-    let wrong = Diagnostic::error("E0290", place, error.message).with_hint(hint).in_source(text);
+    let span = line(&text.text, error.line);
+    let wrong = Diagnostic::error("E0290", span, error.message).with_hint(hint).in_source(text);
     CommandFailure::Invalid(format, vec![wrong])
 }
 

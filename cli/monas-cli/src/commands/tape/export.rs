@@ -99,7 +99,7 @@ fn write_table(
         let channel = &message.channel;
         let mut row = vec![String::new(); columns.names.len()];
         value_text::cells(value, &mut |path, value| {
-            let place = columns.places.get(&(channel.message_type().to_owned(), path.to_owned()));
+            let place = columns.indices.get(&(channel.message_type().to_owned(), path.to_owned()));
             if let Some(&place) = place {
                 row[place] = value_text::plain(value);
             }
@@ -120,7 +120,7 @@ fn write_row(out: &mut dyn Write, cells: impl Iterator<Item = String>) -> Result
 struct Columns {
     names: Vec<String>,
     /// By type and path.
-    places: BTreeMap<(String, String), usize>,
+    indices: BTreeMap<(String, String), usize>,
 }
 
 impl Columns {
@@ -142,12 +142,12 @@ impl Columns {
             Ok(())
         })?;
         let is_single = types.len() <= 1;
-        let mut columns = Columns { names: Vec::new(), places: BTreeMap::new() };
+        let mut columns = Columns { names: Vec::new(), indices: BTreeMap::new() };
         for (name, paths) in types {
             for path in paths {
                 let short = name.rsplit('.').next().unwrap_or(&name);
                 columns.names.push(if is_single { path.clone() } else { format!("{short}.{path}") });
-                columns.places.insert((name.clone(), path), columns.names.len() - 1);
+                columns.indices.insert((name.clone(), path), columns.names.len() - 1);
             }
         }
         Ok(columns)

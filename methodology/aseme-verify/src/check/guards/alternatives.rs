@@ -23,10 +23,10 @@ impl GuardCheck<'_> {
         }
         let never = |id: &TransitionId| self.subject.transition(*id).expression.is_never();
         let ways = self.subject.outgoing(node).iter().copied().filter(|id| !never(id));
-        let ways: Vec<TransitionId> = ways.collect();
+        let transitions: Vec<TransitionId> = ways.collect();
         let mut found = Vec::new();
-        for (index, &later) in ways.iter().enumerate() {
-            let earlier = &ways[index.saturating_sub(MAX_PAIRWISE_TRANSITIONS)..index];
+        for (index, &later) in transitions.iter().enumerate() {
+            let earlier = &transitions[index.saturating_sub(MAX_PAIRWISE_TRANSITIONS)..index];
             match self.shadowed_transition(earlier, later) {
                 Some(shadowed) => found.push(shadowed),
                 None => found.extend(earlier.iter().filter_map(|&first| self.overlap(first, later))),
@@ -57,7 +57,7 @@ impl GuardCheck<'_> {
             None => return None,
         };
         let message = format!("`{}` is never taken: {who} always precedes it", self.subject.arrow(later));
-        Some(Diagnostic::warning("M07", self.subject.places.guard(later), message).with_hint(hint))
+        Some(Diagnostic::warning("M07", self.subject.spans.guard(later), message).with_hint(hint))
     }
 
     fn is_dead(&self, id: TransitionId) -> bool {
@@ -123,7 +123,7 @@ impl GuardCheck<'_> {
         let (one, other) = (self.subject.arrow(first), self.subject.arrow(later));
         let message = format!("`{one}` and `{other}` may both be enabled: where {example}");
         let hint = "the first is used; give them priorities, or guards that exclude each other";
-        Some(Diagnostic::warning("M08", self.subject.places.guard(later), message).with_hint(hint))
+        Some(Diagnostic::warning("M08", self.subject.spans.guard(later), message).with_hint(hint))
     }
 
     /// M10: an event on which one region leaves the AND while another would stay.
@@ -191,7 +191,7 @@ impl GuardCheck<'_> {
             self.subject.arrow(winner)
         );
         let hint = "the one whose source comes first in the model is taken, the other is not; use different events, or guards";
-        Some(Diagnostic::warning("M10", self.subject.places.transition(leaving), message).with_hint(hint))
+        Some(Diagnostic::warning("M10", self.subject.spans.transition(leaving), message).with_hint(hint))
     }
 }
 

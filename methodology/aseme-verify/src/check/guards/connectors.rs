@@ -42,10 +42,10 @@ impl GuardCheck<'_> {
     /// An example of a case that no exit of a node covers. The inner option is `None` if no exit
     /// can be enabled at all.
     fn open_cases(&self, node: NodeId) -> Option<Option<String>> {
-        let ways = self.subject.outgoing(node);
-        let guards: Vec<&Expression> = ways.iter().filter_map(|&id| self.guard(id)).collect();
-        let is_drawn = ways.iter().any(|&id| self.subject.transition(id).weight.is_some());
-        if ways.is_empty() || guards.len() < ways.len() || is_drawn {
+        let transitions = self.subject.outgoing(node);
+        let guards: Vec<&Expression> = transitions.iter().filter_map(|&id| self.guard(id)).collect();
+        let is_drawn = transitions.iter().any(|&id| self.subject.transition(id).weight.is_some());
+        if transitions.is_empty() || guards.len() < transitions.len() || is_drawn {
             return None;
         }
         let claims: Vec<Claim<'_>> = guards.into_iter().map(Claim::IsFalse).collect();
@@ -67,28 +67,28 @@ impl GuardCheck<'_> {
         let segments = self.subject.outgoing(node).iter().copied();
         let mut open: Vec<Vec<TransitionId>> = segments.filter(leads_on).map(|id| vec![id]).collect();
         let mut is_cut = false;
-        while let Some(way) = open.pop() {
+        while let Some(transitions) = open.pop() {
             if looked == MAX_COMPARED_PATHS {
                 is_cut = true;
                 break;
             }
             looked += 1;
-            let Some(&last) = way.last() else { continue };
+            let Some(&last) = transitions.last() else { continue };
             let target = self.subject.transition(last).target;
-            if way.len() > 1 && self.contradict(&way) {
-                found.push(self.dead_way(&way));
+            if transitions.len() > 1 && self.contradict(&transitions) {
+                found.push(self.dead_way(&transitions));
                 continue;
             }
             if !self.is_static(target) {
                 continue;
             }
             // a last segment without a guard contradicts nothing, nor does the only guard
-            let is_guarded = way.iter().any(|&id| self.guard(id).is_some());
+            let is_guarded = transitions.iter().any(|&id| self.guard(id).is_some());
             let matters = |id: &TransitionId| is_guarded && self.guard(*id).is_some() || leads_on(id);
             let mut segments = self.subject.outgoing(target).iter().copied().filter(matters);
-            if way.len() < MAX_PATH_LENGTH && looked < MAX_COMPARED_PATHS {
+            if transitions.len() < MAX_PATH_LENGTH && looked < MAX_COMPARED_PATHS {
                 let left = MAX_COMPARED_PATHS - looked;
-                open.extend(segments.by_ref().take(left).map(|id| [way.as_slice(), &[id]].concat()));
+                open.extend(segments.by_ref().take(left).map(|id| [transitions.as_slice(), &[id]].concat()));
             }
             is_cut |= segments.next().is_some();
         }
@@ -101,7 +101,7 @@ impl GuardCheck<'_> {
             "not all paths through connectors out of `{}` are compared: contradictions beyond {MAX_COMPARED_PATHS} paths or {MAX_PATH_LENGTH} segments are not found",
             self.subject.path(node)
         );
-        let found = Diagnostic::warning("M06", self.subject.places.node(node), message);
+        let found = Diagnostic::warning("M06", self.subject.spans.node(node), message);
         let hint = "make a CHOICE of a connector on the way: paths end there";
         Diagnostic { severity: Severity::Information, ..found }.with_hint(hint)
     }
@@ -114,22 +114,23 @@ impl GuardCheck<'_> {
     }
 
     /// Whether the guards of several segments are contradictory although each guard is satisfiable.
-    fn contradict(&self, way: &[TransitionId]) -> bool {
-        let guards: Vec<&Expression> = way.iter().filter_map(|&id| self.guard(id)).collect();
+    fn contradict(&self, transitions: &[TransitionId]) -> bool {
+        let guards: Vec<&Expression> = transitions.iter().filter_map(|&id| self.guard(id)).collect();
         let alone = |guard: &&Expression| self.logic.together(&[Claim::Holds(guard)]).is_no();
         let claims: Vec<Claim<'_>> = guards.iter().map(|guard| Claim::Holds(guard)).collect();
         guards.len() > 1 && !guards.iter().any(alone) && self.logic.together(&claims).is_no()
     }
 
-    fn dead_way(&self, way: &[TransitionId]) -> Diagnostic {
-        let first =
-            way.first().map_or_else(String::new, |&id| self.subject.path(self.subject.transition(id).source));
-        let last = way[way.len() - 1];
-        let targets = way.iter().map(|&id| self.subject.path(self.subject.transition(id).target));
+    fn dead_way(&self, transitions: &[TransitionId]) -> Diagnostic {
+        let first = transitions
+            .first()
+            .map_or_else(String::new, |&id| self.subject.path(self.subject.transition(id).source));
+        let last = transitions[transitions.len() - 1];
+        let targets = transitions.iter().map(|&id| self.subject.path(self.subject.transition(id).target));
         let path = std::iter::once(first).chain(targets).collect::<Vec<_>>().join("` -> `");
         let message = format!("the path `{path}` is never enabled: its guards contradict each other");
         let hint = "all guards before a CHOICE are evaluated together; make the connector a CHOICE if an action precedes it";
-        Diagnostic::error("M06", self.subject.places.guard(last), message).with_hint(hint)
+        Diagnostic::error("M06", self.subject.spans.guard(last), message).with_hint(hint)
     }
 
     /// Whether a path that reaches a node always continues from it.

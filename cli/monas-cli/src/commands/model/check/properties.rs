@@ -39,7 +39,7 @@ pub(crate) fn checked(
         }
     }
     if !has_unread {
-        report.what = Some("its properties were checked".to_owned());
+        report.kind = Some("its properties were checked".to_owned());
     }
     report
 }
