@@ -48,6 +48,25 @@ fn a_model_is_not_converted_or_transformed_onto_itself() {
 }
 
 #[test]
+fn no_output_replaces_a_model_that_is_read() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let text = CHART.replace("[x]", "[Ball.x > 0]");
+    let (role, chart) = (golden("merged/in.srm"), file(folder.path(), "a.iac", &text));
+    let plain = file(folder.path(), "plain", &text);
+    for (words, kept) in [
+        (&["ontology", &chart, "-o", &chart][..], &chart),
+        (&["draw", &plain, "-o", &plain], &plain),
+        (&["transform", &role, "--to", "iac", "--with", &chart, "-o", &chart], &chart),
+        (&["regenerate", &role, "--from", &chart, "-o", &chart], &chart),
+    ] {
+        let refused = monas(&[&["model"], words].concat());
+        assert_eq!(refused.code, Some(2), "{refused:?}");
+        assert!(refused.err.contains("itself: name another file"), "{}", refused.err);
+        assert_eq!(fs::read_to_string(kept).expect("it is there"), text);
+    }
+}
+
+#[test]
 fn losses_are_listed_and_need_confirmation() {
     let folder = tempfile::tempdir().expect("a folder");
     let input =

@@ -4,7 +4,9 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueHint};
 use monas::config;
-use monas_terminal::{CommandFailure, CommandOutput, Exit, FormatArgument, report, write_drawing};
+use monas_terminal::{
+    CommandFailure, CommandOutput, Exit, FormatArgument, check_distinct, report, write_drawing,
+};
 use yase::statechart::Layout;
 
 /// Arguments of `monas model draw`.
@@ -35,6 +37,9 @@ pub(crate) fn execute(
     console: &mut CommandOutput<'_>,
 ) -> Result<Exit, CommandFailure> {
     let format = arguments.format.value;
+    if let Some(output) = &arguments.output {
+        check_distinct(&arguments.file, output, "model")?;
+    }
     let read = |path: &PathBuf| {
         config::read_file(path).map_err(|unread| CommandFailure::Invalid(format, vec![*unread]))
     };

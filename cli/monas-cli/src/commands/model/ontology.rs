@@ -5,7 +5,9 @@ use std::path::PathBuf;
 use aseme_models::convert::Model;
 use aseme_models::ontology;
 use clap::{Args, ValueHint};
-use monas_terminal::{CommandFailure, CommandOutput, Exit, FormatArgument, report, write_text};
+use monas_terminal::{
+    CommandFailure, CommandOutput, Exit, FormatArgument, check_distinct, report, write_text,
+};
 use yase::Diagnostic;
 
 use crate::input::valid_model;
@@ -36,6 +38,9 @@ pub(crate) fn execute(
         return Err(CommandFailure::Usage(format!(
             "`{package}` is not a package name such as team or team.soccer"
         )));
+    }
+    if let Some(output) = output {
+        check_distinct(file, output, "model")?;
     }
     let (source, model, ..) = valid_model(file, format, console)?;
     let (chart, found) = aseme_models::statechart_of(&source);

@@ -8,7 +8,9 @@ use aseme_models::convert::Model;
 use aseme_models::regenerate::{self, RegeneratedRole};
 use clap::{Args, ValueHint};
 use monas::config;
-use monas_terminal::{CommandFailure, CommandOutput, Exit, Format, FormatArgument, report, write_text};
+use monas_terminal::{
+    CommandFailure, CommandOutput, Exit, Format, FormatArgument, check_distinct, report, write_text,
+};
 use yase::Diagnostic;
 
 use crate::input::valid_model;
@@ -34,6 +36,10 @@ pub(crate) fn execute(
     console: &mut CommandOutput<'_>,
 ) -> Result<Exit, CommandFailure> {
     let format = arguments.format.value;
+    // only the role itself may be replaced
+    if let Some(output) = &arguments.output {
+        arguments.from.iter().try_for_each(|from| check_distinct(from, output, "model of --from"))?;
+    }
     let source = config::read_file(&arguments.role)
         .map_err(|unread| CommandFailure::Invalid(format, vec![*unread]))?;
     let placed = |found: Vec<Diagnostic>| -> Vec<Diagnostic> {

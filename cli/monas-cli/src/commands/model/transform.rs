@@ -74,6 +74,7 @@ pub(crate) fn execute(
 ) -> Result<Exit, CommandFailure> {
     if let Some(output) = &arguments.output {
         check_distinct(&arguments.file, output, "model")?;
+        arguments.with.iter().try_for_each(|with| check_distinct(with, output, "model of --with"))?;
     }
     let kind = arguments.to.or(arguments.model_format()?.map(|_| Kind::Iac));
     match kind {
