@@ -181,6 +181,22 @@ fn a_way_that_there_is_not_is_answered() {
 }
 
 #[test]
+fn an_option_of_another_transformation_is_refused() {
+    let role = golden("merged/in.srm");
+    for (words, option) in [
+        (&[&role, "--name", "nobody"][..], "--name"),
+        (&[&role, "--keep", "nowhere.iac"], "--keep"),
+        (&[&role, "--with", "nowhere.eac"], "--with"),
+        (&[&role, "--to", "ft", "--name", "nobody"], "--name"),
+        (&[&golden("protocol_chart/in.aip"), "--to", "eac", "--with", "nowhere.eac"], "--with"),
+    ] {
+        let refused = monas(&[&["model", "transform"], words].concat());
+        assert_eq!((refused.code, refused.out.as_str()), (Some(2), ""), "{refused:?}");
+        assert!(refused.err.contains(&format!("`{option}` has no effect here")), "{}", refused.err);
+    }
+}
+
+#[test]
 fn every_kind_of_model_is_checked() {
     let answer = monas(&[
         "model",

@@ -77,6 +77,7 @@ pub(crate) fn execute(
         arguments.with.iter().try_for_each(|with| check_distinct(with, output, "model of --with"))?;
     }
     let kind = arguments.to.or(arguments.model_format()?.map(|_| Kind::Iac));
+    arguments.check_options(kind)?;
     match kind {
         None => chart(arguments, console),
         Some(kind) => Transformation { arguments, format: arguments.format.value, console }.execute(kind),
@@ -84,6 +85,23 @@ pub(crate) fn execute(
 }
 
 impl TransformArguments {
+    /// Refuses options that this transformation would ignore.
+    fn check_options(&self, kind: Option<Kind>) -> Result<(), CommandFailure> {
+        let gives_models = !matches!(kind, None | Some(Kind::Ft));
+        let takes_others = matches!(kind, Some(Kind::Srm | Kind::Iac));
+        let options = [
+            ("name", self.name.is_some(), gives_models, "it selects one of the models that `--to` gives"),
+            ("keep", self.keep.is_some(), gives_models, "it belongs to `--to iac` and `--to eac`"),
+            ("with", !self.with.is_empty(), takes_others, "it belongs to `--to srm` and `--to iac`"),
+        ];
+        match options.into_iter().find(|(_, is_given, has_effect, _)| *is_given && !has_effect) {
+            Some((option, .., reason)) => {
+                Err(CommandFailure::Usage(format!("`--{option}` has no effect here: {reason}")))
+            }
+            None => Ok(()),
+        }
+    }
+
     /// The format of models that --as or the extension of the output asks for; none for the outline
     /// of a statechart.
     fn model_format(&self) -> Result<Option<ModelFormat>, CommandFailure> {
