@@ -197,6 +197,20 @@ fn an_option_of_another_transformation_is_refused() {
 }
 
 #[test]
+fn losses_that_are_accepted_are_warnings() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (input, output) = (file(folder.path(), "a.txt", CHART), folder.path().join("a.scxml"));
+    let output = output.display().to_string();
+    let refused = monas(&["model", "convert", &input, &output]);
+    assert_eq!(refused.code, Some(1));
+    assert!(refused.err.contains("error[E0620]"), "{}", refused.err);
+    let written = monas(&["model", "convert", &input, &output, "--lossy"]);
+    assert_eq!(written.code, Some(0));
+    assert!(written.err.contains("warning[E0620]"), "{}", written.err);
+    assert!(!written.err.contains("error"), "{}", written.err);
+}
+
+#[test]
 fn every_kind_of_model_is_checked() {
     let answer = monas(&[
         "model",

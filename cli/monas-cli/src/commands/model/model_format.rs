@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use aseme_models::convert::{Format as ModelFormat, Model};
 use monas_terminal::{CommandFailure, CommandOutput, Format, report};
-use yase::{Diagnostic, Source};
+use yase::{Diagnostic, Severity, Source};
 
 /// The format of a name.
 pub(crate) fn named(word: &str) -> Result<ModelFormat, CommandFailure> {
@@ -32,7 +32,11 @@ pub(crate) fn text_of(
         .write(wanted, &source.text)
         .map_err(|refused| CommandFailure::Invalid(format, placed(refused)))?;
     let count = written.lost.len() + lost_before;
-    report::write(console, format, &placed(written.lost))?;
+    let mut lost = placed(written.lost);
+    if lossy {
+        lost.iter_mut().for_each(|lost| lost.severity = Severity::Warning);
+    }
+    report::write(console, format, &lost)?;
     match count > 0 && !lossy {
         true => {
             let message = format!(
