@@ -114,6 +114,20 @@ fn two_mistakes_are_two_objects() {
 }
 
 #[test]
+fn an_exploration_that_is_not_finished_is_not_silent_in_json() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = file(folder.path(), "short.srm", "Role: short\nLiveness:\nshort = Walk . Look . Report\n");
+    let check = |limit: &[&str]| -> Value {
+        let words = ["model", "check", "--unlinked", &path, "--format", "json"];
+        let answer = monas(&[&words, limit].concat());
+        assert_eq!((answer.code, answer.err.as_str()), (Some(0), ""));
+        serde_json::from_str(&answer.out).expect("one object")
+    };
+    assert_eq!(check(&[]), serde_json::json!({"model": path, "states": 4, "finished": true}));
+    assert_eq!(check(&["--states", "2"])["finished"], false);
+}
+
+#[test]
 fn a_missing_file_is_answered_with_the_one_that_is_there() {
     let answer = monas(&["model", "transform", "models/golie.srm"]);
     assert_eq!(answer.code, Some(3));

@@ -9,6 +9,7 @@ use aseme_verify::{CheckSettings, check::CheckReport};
 use clap::{Args, ValueEnum, ValueHint};
 use monas::config;
 use monas_terminal::{CommandFailure, CommandOutput, Exit, Format, report};
+use serde_json::json;
 use yase::Severity;
 
 use super::exploration::{ExplorationArguments, extent};
@@ -90,7 +91,7 @@ pub(crate) fn execute(
             properties::text(&judged, console)?;
         }
         CheckFormat::Json => {
-            json(&reports, console)?;
+            json(&reports, arguments.properties.is_empty(), console)?;
             properties::json(&judged, console)?;
         }
         CheckFormat::Sarif => {
@@ -150,8 +151,13 @@ fn text(
     Ok(())
 }
 
-/// One object per line; a finding with a trace has it as `trace`.
-fn json(reports: &[(&Path, CheckReport)], console: &mut CommandOutput<'_>) -> Result<(), CommandFailure> {
+/// One object per line; a finding with a trace has it as `trace`. Without properties one line more
+/// for each model that could be read: whether its checks are finished.
+fn json(
+    reports: &[(&Path, CheckReport)],
+    is_told: bool,
+    console: &mut CommandOutput<'_>,
+) -> Result<(), CommandFailure> {
     let findings = reports.iter().flat_map(|(_, report)| report.findings.iter().map(move |it| (it, report)));
     for (finding, report) in findings {
         let mut object = finding::object(finding);
@@ -160,6 +166,13 @@ fn json(reports: &[(&Path, CheckReport)], console: &mut CommandOutput<'_>) -> Re
             fields.insert("states".into(), states.into_iter().collect());
         }
         writeln!(console.err, "{object}")?;
+    }
+    for (path, report) in reports.iter().filter(|(_, report)| is_told && !report.is_unreadable()) {
+        let explored = report.explored.as_ref();
+        let is_finished = !report.is_stopped && explored.is_none_or(|explored| explored.is_finished);
+        let states = explored.map(|explored| explored.states);
+        let object = json!({"model": config::shown_name(path), "states": states, "finished": is_finished});
+        writeln!(console.out, "{object}")?;
     }
     Ok(())
 }
