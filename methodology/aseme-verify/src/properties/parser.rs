@@ -27,6 +27,10 @@ pub fn parse(text: &str) -> (Vec<Property>, Vec<Diagnostic>) {
             Err(ErrorReported) => parser.skip(),
         }
     }
+    if properties.is_empty() && parser.found.is_empty() {
+        let wrong = Diagnostic::error("E0840", Span::default(), "the file has no property");
+        parser.found.push(wrong.with_hint("a property is `property \"its name\": formula`"));
+    }
     (properties, parser.found)
 }
 

@@ -245,3 +245,13 @@ fn words_reach_as_far_as_they_can() {
     let printed = parse(text).0[0].formula.to_string();
     assert_eq!(printed, "always ([Ball.found] implies ((eventually (in a or in b) within 2 s) and in c))");
 }
+
+#[test]
+fn a_file_without_properties_is_an_error() {
+    for text in ["", "\n", "# property \"p\": in a\n"] {
+        let (properties, found) = parse(text);
+        let codes: Vec<&str> = found.iter().map(|finding| finding.code).collect();
+        assert_eq!((properties.len(), codes), (0, vec!["E0840"]), "{text:?}");
+    }
+    assert_eq!(parse("always in a\n").1.len(), 1, "once is enough");
+}
