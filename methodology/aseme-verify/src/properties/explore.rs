@@ -214,7 +214,7 @@ fn trace_text(
             text += "# repeats forever from here\n";
         }
         if let Some(pace) = pace.filter(|_| known.elapsed > 0) {
-            let milliseconds = pace.tick.as_secs_f64() * known.elapsed as f64 * 1e3;
+            let milliseconds = pace.tick.as_nanos() as f64 * known.elapsed as f64 / 1e6;
             text += &format!("# after {milliseconds} ms\n");
         }
         text += &trace.text_of(step);

@@ -114,6 +114,9 @@ fn bounds_are_of_model_time() {
     assert_eq!(outcome(&takes("300 ms"), until), PropertyOutcome::Holds);
     let text = run_against(&takes("400 ms"), soon);
     assert!(text.contains("# after 400 ms\nreturn "), "{text}");
+    // seven ticks of 100 ms are no whole number of milliseconds if seconds are multiplied
+    let text = run_against(&takes("700 ms"), soon);
+    assert!(text.contains("# after 700 ms\nreturn "), "{text}");
     let never = "always not (entering a and eventually entering b within 200 ms)";
     assert_eq!(outcome(&takes("300 ms"), never), PropertyOutcome::Holds);
     assert_eq!(outcome(&takes("200 ms"), never), PropertyOutcome::Violated);
