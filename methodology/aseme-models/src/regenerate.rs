@@ -47,6 +47,7 @@ pub fn comment_out_refinements(file: &SrmFile) -> Result<RegeneratedRole, Vec<Di
         return Err(found);
     }
     let original: Vec<SrmEntry> = file.entries().iter().copied().filter(is_refinement).collect();
+    let given = file.text();
     let (file, renamed) = with_new_names(file, &original, &chart);
     let entries: Vec<SrmEntry> = file.entries().iter().copied().filter(is_refinement).collect();
     let mut lost = unmatched(&file, chart);
@@ -66,7 +67,18 @@ pub fn comment_out_refinements(file: &SrmFile) -> Result<RegeneratedRole, Vec<Di
             unmatched.diagnostic.span = entry.span;
         }
     }
+    let text = with_line_ends_of(given, text);
     Ok(RegeneratedRole { text, kept: entries.len() - count, lost, renamed })
+}
+
+/// A text with the line ends of the file that it was made from: lines that were added end in CR LF
+/// if all lines of the file do.
+fn with_line_ends_of(file: &str, text: String) -> String {
+    let (lines, ends) = (file.matches('\n').count(), file.matches("\r\n").count());
+    match ends > 0 && lines == ends {
+        true => text.replace("\r\n", "\n").replace('\n', "\r\n"),
+        false => text,
+    }
 }
 
 /// The entries of a role that do not fit the chart of its formulas.
@@ -153,6 +165,7 @@ pub fn apply_refinements(
         let gap = if text.ends_with('\n') { "" } else { "\n" };
         text = format!("{text}{gap}{}\n", comment(&unmatched.text, &unmatched.diagnostic));
     }
+    let text = with_line_ends_of(file.text(), text);
     Ok(RegeneratedRole { text, kept, lost, renamed: Vec::new() })
 }
 

@@ -71,6 +71,24 @@ fn unmatched_entries_become_comments_with_reasons() {
 }
 
 #[test]
+fn the_line_ends_of_the_file_are_kept() {
+    let crlf = |text: &str| text.replace('\n', "\r\n");
+    let edited = crlf(&ROLE.replace("act = Track . Kick", "act = Track . [Align] . Kick"));
+    let made = comment_out_refinements(&file(&edited)).unwrap();
+    assert_eq!(made.lost.len(), 1);
+    assert_eq!(made.text, crlf(&made.text.replace('\r', "")));
+
+    let bare =
+        crlf("Role: player\nLiveness:\nplayer = Stand . ( Search | act )\nact = Track . [Align] . Kick\n");
+    let made = apply_refinements(&file(&bare), &entries_of_role(&file(ROLE))).unwrap();
+    assert_eq!(made.lost.len(), 1);
+    assert_eq!(made.text, crlf(&made.text.replace('\r', "")));
+    let last = file(&made.text);
+    let made = apply_refinements(&last, &[(Section::Transitions, "act -> END : [x]".into())]).unwrap();
+    assert_eq!((made.kept, made.text.as_str()), (1, crlf(&made.text.replace('\r', "")).as_str()));
+}
+
+#[test]
 fn another_way_beside_the_formulas_is_named_added_and_carried() {
     let role = "Role: r\nLiveness:\nr = a . b . c\nb = d . e\nTransitions:\nb -> c : [B.x]\nb -> c also !1 : stop\nb -> c also : [B.y]\n";
     let own = chart(role);
