@@ -112,10 +112,10 @@ impl Reader<'_> {
                 Ok(setting) => self.setting(class, &setting, &mut object, &mut said),
                 Err(line) => {
                     let message = format!("`{}` is not a setting", line.content.text);
-                    let hint = format!(
-                        "write `key = value`; keys are {}",
-                        keys(class).collect::<Vec<_>>().join(", ")
-                    );
+                    let hint = match keys(class).next() {
+                        Some(_) => format!("write `key = value`; {}", keys_hint(class)),
+                        None => keys_hint(class),
+                    };
                     self.report(Diagnostic::error("E0265", line.content.span, message).with_hint(hint));
                 }
             }
@@ -129,9 +129,8 @@ impl Reader<'_> {
             feature.key == key.text && !matches!(feature.kind, FeatureKind::Opposite { .. })
         };
         let Some(index) = class.features.iter().position(known).filter(|&index| index != class.title) else {
-            let message = format!("a {} has no `{}`", class.header, key.text);
-            let hint = format!("keys are {}", keys(class).collect::<Vec<_>>().join(", "));
-            let found = Diagnostic::error("E0266", key.span, message).with_hint(hint);
+            let message = format!("`{}:` has no `{}`", class.header, key.text);
+            let found = Diagnostic::error("E0266", key.span, message).with_hint(keys_hint(class));
             return self.report(found.with_nearest(&key.text, keys(class)));
         };
         if std::mem::replace(&mut said[index], true) {
@@ -199,6 +198,15 @@ fn keys(class: &Class) -> impl Iterator<Item = &'static str> {
     let features = class.features.iter().enumerate().filter(|(index, _)| *index != class.title);
     let said = features.filter(|(_, feature)| !matches!(feature.kind, FeatureKind::Opposite { .. }));
     said.map(|(_, feature)| feature.key)
+}
+
+/// The settings of an object in words.
+fn keys_hint(class: &Class) -> String {
+    let keys: Vec<&str> = keys(class).collect();
+    match keys.as_slice() {
+        [] => format!("an item `{}:` has a name and no settings", class.header),
+        keys => format!("keys are {}", keys.join(", ")),
+    }
 }
 
 fn block_text(lines: &[Line]) -> String {

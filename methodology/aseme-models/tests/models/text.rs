@@ -218,6 +218,19 @@ fn faults_of_texts_are_placed() {
 }
 
 #[test]
+fn an_item_without_settings_is_not_answered_with_an_empty_list() {
+    for (setting, code) in [("goals = b", "E0266"), ("goals", "E0265")] {
+        let (.., findings) = read(&format!("SAG:\nActor: a\n  {setting}\n"));
+        let hint = Some("an item `Actor:` has a name and no settings");
+        assert_eq!((findings[0].code, findings[0].hint.as_deref()), (code, hint));
+    }
+    let (.., findings) = read("SAG:\nActor: a\n  goals = b\n");
+    assert_eq!(findings[0].message, "`Actor:` has no `goals`");
+    let (.., findings) = read("SAG:\nGoal: g\n  zzzzz = b\n");
+    assert_eq!(findings[0].hint.as_deref(), Some("keys are requirements, depender, dependees"));
+}
+
+#[test]
 fn a_path_that_names_several_states_is_answered_with_those_that_name_one() {
     let text = "IAC: c\nStates:\n  r OR\n    START\n    a OR\n      START\n      x BASIC\n    b OR\n      START\n      x BASIC\nTransitions:\n  x -> x\n";
     let (.., findings) = read(text);
