@@ -34,8 +34,7 @@ parameters! {
         defender_time: "s" = 1.0 in 0.0 to 600.0;
         /// Time without a touch of the ball after which the referee drops it.
         stuck_time: "s" = 30.0 in 1.0 to 3600.0;
-        /// The distance by which a ball out of play is put back against the team that touched it
-        /// last.
+        /// How far a ball out of play is put back against the team that touched it last.
         throw_in_setback: "m" = 1.0 in 0.0 to 10.0;
         /// 1 when teams also change shirts at half time, so that blue always defends the blue goal;
         /// 0 when they keep them.
