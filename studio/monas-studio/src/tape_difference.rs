@@ -78,8 +78,9 @@ pub struct TapeEvent {
 type MessageKey<'a> = (&'a str, &'a str, &'a str, u32);
 
 impl TapeRun {
-    /// The earliest message on which two tapes differ up to a time in seconds, besides the records
-    /// of the runtime. Messages are equal if publisher, topic, number, time and bytes are.
+    /// The earliest message on which two tapes differ before a time in seconds, besides the records
+    /// of the runtime. Messages are equal if publisher, topic, number, time and bytes are. The time
+    /// itself is left out, as in a simulated run up to it.
     pub fn first_difference(&self, other: &TapeRun, until: f64) -> Option<TapeDifference> {
         let (own, others) = (self.by_key(), other.by_key());
         let time = |tape: &TapeRun, index: Option<&usize>| {
@@ -105,7 +106,7 @@ impl TapeRun {
             found.map(|(entry, _)| tape.decoder().decode(topic, tape.bytes(entry))).unwrap_or_default()
         };
         Some(TapeDifference {
-            time: seconds(when(key).filter(|time| seconds(*time) <= until)?),
+            time: seconds(when(key).filter(|time| seconds(*time) < until)?),
             host: host.to_owned(),
             publisher: publisher.to_owned(),
             topic: topic.to_owned(),
@@ -124,19 +125,19 @@ impl TapeRun {
         (0..self.len()).filter_map(key).collect()
     }
 
-    /// The scene's text above the plane at a time in seconds: the score of a match.
+    /// The scene's text above the plane right before a time in seconds: the score of a match.
     pub fn banner_at(&self, time: f64) -> Option<Banner> {
-        let count = self.count_until((time * 1e9).max(0.0) as u64);
+        let count = self.count_until(((time * 1e9).round() as u64).saturating_sub(1));
         let mut moment = self.moment_before(count).clone();
         moment.advance(self, count);
         moment.view.scene_picture(self.scene()?).banner
     }
 
-    /// The events of the scene between two times in seconds.
+    /// The events of the scene from a time on and before another, in seconds.
     pub fn events_between(&self, begin: f64, end: f64) -> Vec<TapeEvent> {
         let event = |event: &Value| {
             let word = |key: &str| event[key].as_str().unwrap_or_default().to_owned();
-            let time = event["t"].as_f64().filter(|time| (begin..=end).contains(time))?;
+            let time = event["t"].as_f64().filter(|time| (begin..end).contains(time))?;
             Some(TapeEvent { time, kind: word("kind"), text: word("text") })
         };
         self.events().iter().filter_map(event).collect()

@@ -80,6 +80,29 @@ fn an_output_that_is_the_tape_and_moments_outside_of_it_are_refused() {
 }
 
 #[test]
+fn the_end_of_a_comparison_is_not_a_difference() {
+    let whole = tape();
+    let folder = tempfile::tempdir().expect("a folder");
+    let part = text(&folder.path().join("part.mcap"));
+    done(&["tape", "cut", &whole, "--to", "5s", "-o", &part]);
+    let kept = text(&folder.path().join("kept.mcap"));
+    let what_if = |tape: &str, more: &[&str]| {
+        let change = ["--at", "3s", "--set", "agent.Goalie.frequency=50"];
+        done(&[&["tape", "what-if", tape], &change[..], more].concat()).out
+    };
+    // sim/truth is published at whole seconds, and 25 s is the end of the run.
+    for (tape, more, end) in [
+        (&whole, &["--for", "4s"][..], 4.0),
+        (&whole, &["--for", "26s", "-o", &kept], 25.0),
+        (&part, &[], 4.98),
+        (&kept, &[], 26.0),
+    ] {
+        let answer = what_if(tape, more);
+        assert!(answer.contains(&format!("no message differs up to {end:.3} s")), "{more:?}: {answer}");
+    }
+}
+
+#[test]
 fn a_tape_is_verified_as_a_whole_and_its_log_is_read() {
     let answer = done(&["tape", "verify", &tape(), "--format", "json"]);
     let replayed = done(&["tape", "replay", &tape(), "--verify", "--format", "json"]);

@@ -17,7 +17,7 @@ use yase::expression::{Expression, parse_transition};
 
 use crate::commands::studio::scene;
 use crate::input::{
-    ConfigurationKind, LayerArguments, check_within, file_parser, kind_of, layers, recorded_charts,
+    ConfigurationKind, LayerArguments, check_within, end_of, file_parser, kind_of, layers, recorded_charts,
     recorded_configuration, run_of,
 };
 
@@ -82,7 +82,12 @@ pub(crate) fn execute(
     let options = MatchOptions { seed, record: Some(tape.clone()) };
     let plan = plan(&recording, folder.path(), format)?;
     let mut running = plan.start(options).map_err(failed(format))?;
-    let end = arguments.length.unwrap_or_else(|| Duration::from_secs_f64(recorded.end_seconds()));
+    // Without the end of its run a tape may lack messages of its last moment.
+    let recorded_end = end_of(&overview).map_or_else(
+        || Duration::from_secs_f64(recorded.end_seconds()),
+        |end| Duration::from_nanos(end.as_nanos()),
+    );
+    let end = arguments.length.unwrap_or(recorded_end);
     running.advance(arguments.at).map_err(failed(format))?;
     let mut texts = Vec::new();
     for PlannedChange { host, text, change } in changes {
@@ -100,7 +105,7 @@ pub(crate) fn execute(
 
     let other = Recording::open(&path).map_err(failed(format))?;
     let other = TapeRun::new("", other, &charts, scene()).map_err(failed(format))?;
-    let end = end.as_secs_f64().min(recorded.end_seconds());
+    let end = end.min(recorded_end).as_secs_f64();
     let futures =
         RunComparison { recorded: &recorded, other: &other, at: arguments.at.as_secs_f64(), end, texts };
     futures.write(console, format)
@@ -217,7 +222,7 @@ struct RunComparison<'a> {
     other: &'a TapeRun,
     /// The moment of the change, s.
     at: f64,
-    /// The time up to which both are compared, s.
+    /// The end of the comparison, which is not part of it, s.
     end: f64,
     texts: Vec<String>,
 }
