@@ -2,6 +2,7 @@
 
 mod calibrate;
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum, ValueHint};
@@ -83,6 +84,7 @@ pub(crate) fn execute(
         return calibrate::calibrate(arguments, table, console);
     }
     let colours = known_colours(arguments)?;
+    check_overlays(arguments)?;
     for file in &arguments.files {
         let failed =
             |message: String| CommandFailure::Failed(format, format!("{}: {message}", file.display()));
@@ -130,6 +132,23 @@ fn camera(arguments: &VisionArguments, image: &Image<'_>) -> Result<Camera, mona
         ..HeadPose::default()
     };
     Camera::new(image.width(), image.height(), arguments.view.to_radians(), &pose.robot_from_camera())
+}
+
+/// Refuses images with one name, since the overlay of one would replace that of the other.
+fn check_overlays(arguments: &VisionArguments) -> Result<(), CommandFailure> {
+    let mut drawn: BTreeMap<PathBuf, &Path> = BTreeMap::new();
+    for file in &arguments.files {
+        let overlay = overlay_path(file, &arguments.output);
+        if let Some(other) = drawn.insert(overlay.clone(), file).filter(|other| other != file) {
+            return Err(CommandFailure::Usage(format!(
+                "the overlays of {} and {} are one file, {}: rename an image, or use another --output for it",
+                other.display(),
+                file.display(),
+                overlay.display()
+            )));
+        }
+    }
+    Ok(())
 }
 
 fn overlay_path(file: &Path, folder: &Path) -> PathBuf {

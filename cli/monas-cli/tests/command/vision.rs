@@ -212,6 +212,8 @@ fn what_cannot_be_used_is_refused() {
             "tiny.png: an image of 8 x 8 pixels: the width must be even, and both from 16 to 4096",
         ),
         (vec!["--view", "200", "day.png"], 1, "an angle of view of 3.49"),
+        (vec!["day.png", "other/day.png"], 2, "the overlays of day.png and other/day.png are one file"),
+        (vec!["day.jpg", "day.png"], 2, "the overlays of day.jpg and day.png are one file"),
         (vec!["--height", "-1", "day.png"], 2, "unexpected argument '-1'"),
         (vec!["--output", "missing/folder", "day.png"], 1, "cannot write missing/folder/day.seen.png: "),
         (vec!["--colours", "none.xml", "day.png"], 3, "no file `none.xml`"),
