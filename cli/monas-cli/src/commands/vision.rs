@@ -29,17 +29,17 @@ pub(crate) struct VisionArguments {
     #[arg(long, value_enum, default_value = "today")]
     objects: ObjectSet,
     /// Pitch of the camera, degrees, positive downwards.
-    #[arg(long, value_name = "DEGREES", default_value_t = 0.0, allow_negative_numbers = true)]
+    #[arg(long, value_name = "DEGREES", default_value_t = 0.0, value_parser = angle, allow_negative_numbers = true)]
     pitch: f64,
     /// Roll of the camera, degrees, positive to the right.
-    #[arg(long, value_name = "DEGREES", default_value_t = 0.0, allow_negative_numbers = true)]
+    #[arg(long, value_name = "DEGREES", default_value_t = 0.0, value_parser = angle, allow_negative_numbers = true)]
     roll: f64,
     /// Height of the camera above the ground, metres.
     #[arg(long, value_name = "METRES", default_value_t = 0.5)]
     height: f64,
     /// Angle of view from left to right, degrees: 47.8 for a Nao V3, 60.9 for V4 and V5, 54.7 for
     /// V6.
-    #[arg(long, value_name = "DEGREES", default_value_t = 54.7)]
+    #[arg(long, value_name = "DEGREES", default_value_t = 54.7, value_parser = angle_of_view)]
     view: f64,
     /// The folder for the overlays.
     #[arg(short, long, value_name = "FOLDER", default_value = ".", value_hint = ValueHint::DirPath)]
@@ -132,6 +132,24 @@ fn camera(arguments: &VisionArguments, image: &Image<'_>) -> Result<Camera, mona
         ..HeadPose::default()
     };
     Camera::new(image.width(), image.height(), arguments.view.to_radians(), &pose.robot_from_camera())
+}
+
+/// An angle of the camera, degrees.
+fn angle(text: &str) -> Result<f64, String> {
+    let degrees: f64 = text.parse().map_err(|_| "expected a number of degrees".to_owned())?;
+    match (-180.0..=180.0).contains(&degrees) {
+        true => Ok(degrees),
+        false => Err("an angle is from -180 to 180 degrees".into()),
+    }
+}
+
+/// The angle of view of the camera, degrees.
+fn angle_of_view(text: &str) -> Result<f64, String> {
+    let degrees = angle(text)?;
+    match (6.0..=171.0).contains(&degrees) {
+        true => Ok(degrees),
+        false => Err("an angle of view is from 6 to 171 degrees".into()),
+    }
 }
 
 /// Refuses images with one name, since the overlay of one would replace that of the other.
