@@ -301,6 +301,13 @@ fn read_robot(
     let role = values.given("role").and_then(|role| named(path, role, diagnostics));
     let own = Layers::new().robot(robot.children().iter().cloned());
     let has_process = values.flag("process").unwrap_or_default();
+    // As layers over the role they would be one body with the attributes of both. A body of the
+    // command line is a layer over that of the file.
+    let is_of_file = |body: &&Element| Arc::ptr_eq(body.source(), robot.source());
+    for body in robot.children_named("body").filter(is_of_file).skip(1) {
+        let found = body.error("E0329", body.name_span(), "a robot has one body");
+        diagnostics.push(found.with_hint("remove one of the two `body`"));
+    }
     Some(RobotFile { number: values.number("number")?, role: role?, has_process, own })
 }
 
@@ -455,6 +462,15 @@ mod tests {
             found[0].starts_with("match.xml:2:24: error[E0407]: `A b` and `a-B` are too alike"),
             "{found:#?}"
         );
+    }
+
+    #[test]
+    fn a_robot_of_a_match_has_one_body() {
+        let found = diagnostics_of(
+            "<match><team number='1' name='A' colour='blue' side='left'>\n<robot number='1' role='match.xml'><body kind='nao'/><body/></robot></team>\n<team number='2' name='B' colour='red' side='right'/></match>",
+        );
+        assert_eq!(found.len(), 1, "{found:#?}");
+        assert!(found[0].starts_with("match.xml:2:55: error[E0329]: a robot has one body"), "{found:#?}");
     }
 
     #[test]
