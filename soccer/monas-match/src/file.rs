@@ -320,6 +320,13 @@ fn check(file: &MatchFile, root: &Element, diagnostics: &mut Vec<Diagnostic>) {
     if let Err(error) = monas_sim::check_lineup(&setups, &file.lineup()) {
         diagnostics.push(lineup_diagnostic(root, &error));
     }
+    for (index, setup) in setups.iter().enumerate() {
+        if setup.name.trim().is_empty() {
+            let message = "a team has no name: its robots are named after it".to_owned();
+            let found = at_value(team(root, index), root, "name", "E0407", message);
+            diagnostics.push(found.with_hint("write a name, as in `name=\"Blue\"`"));
+        }
+    }
     if let [first, second] = &setups[..]
         && host_name(&first.name) == host_name(&second.name)
     {
@@ -462,6 +469,18 @@ mod tests {
             found[0].starts_with("match.xml:2:24: error[E0407]: `A b` and `a-B` are too alike"),
             "{found:#?}"
         );
+    }
+
+    #[test]
+    fn a_team_has_a_name() {
+        for name in ["", " "] {
+            let found = diagnostics_of(&format!(
+                "<match><team number='1' name='A' colour='blue' side='left'/>\n<team number='2' name='{name}' colour='red' side='right'/></match>",
+            ));
+            assert_eq!(found.len(), 1, "{found:#?}");
+            assert!(found[0].starts_with("match.xml:2:"), "{found:#?}");
+            assert!(found[0].contains("error[E0407]: a team has no name"), "{found:#?}");
+        }
     }
 
     #[test]
