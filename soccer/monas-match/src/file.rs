@@ -493,6 +493,27 @@ mod tests {
     }
 
     #[test]
+    fn a_number_that_is_0_or_1_is_nothing_between() {
+        for (file, place) in [
+            ("<field walls='0.5'/>", "1:15"),
+            ("<simulator><rules><switch_colours>0.5</switch_colours></rules></simulator>", "1:35"),
+        ] {
+            let folder = tempfile::tempdir().unwrap();
+            let part = if file.starts_with("<field") { "field" } else { "simulator" };
+            std::fs::write(folder.path().join("part.xml"), file).unwrap();
+            let path = folder.path().join("match.xml");
+            std::fs::write(&path, format!("<match {part}='part.xml'/>")).unwrap();
+            let mut diagnostics = Vec::new();
+            read(&path, &Layers::new(), &mut diagnostics);
+            let found: Vec<String> = diagnostics.iter().map(ToString::to_string).collect();
+            assert!(
+                found.iter().any(|found| found.contains(&format!("part.xml:{place}: error[E0306]"))),
+                "{found:#?}"
+            );
+        }
+    }
+
+    #[test]
     fn the_number_that_stands_for_no_team_is_no_team() {
         let found = |number: u8| {
             diagnostics_of(&format!(

@@ -96,5 +96,8 @@ fn part(grammar: Grammar, name: &'static str, doc: &'static str, keys: &'static 
 }
 
 fn kind(parameter: &Parameter) -> Kind {
+    if parameter.unit == "0 or 1" {
+        return Kind::whole_in(0, 1);
+    }
     Kind::number_in(parameter.least, parameter.most)
 }
