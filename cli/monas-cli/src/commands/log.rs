@@ -2,15 +2,16 @@
 
 mod line;
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use clap::{Args, ValueEnum, ValueHint};
 use clap_complete::engine::{ArgValueCandidates, CompletionCandidate};
-use monas::duration;
 use monas::records::foxglove::Log;
 use monas::records::foxglove::log::Level;
-use monas_tape::Recording;
+use monas::{duration, records};
+use monas_tape::{Recording, TapeOverview};
 use prost::Message;
 
 #[cfg(unix)]
@@ -113,6 +114,9 @@ fn of_tape(
     let overview = recording.overview().map_err(failed(format))?;
     let hosts = overview.channels.iter().map(|counted| counted.channel.host.as_str());
     arguments.check_robots("tape", &hosts.collect::<Vec<_>>())?;
+    if !arguments.agents.is_empty() {
+        arguments.check_agents(&agents(&recording, &overview, format)?)?;
+    }
     let mut left = arguments.count.unwrap_or(u64::MAX);
     for message in recording.messages().map_err(failed(format))? {
         if left == 0 {
@@ -130,6 +134,27 @@ fn of_tape(
         }
     }
     Ok(Exit::Success)
+}
+
+/// The agents on a tape: those with records of cycles or charts, and those with lines, since a tape
+/// may have been cut to the log.
+fn agents(
+    recording: &Recording,
+    overview: &TapeOverview,
+    format: Format,
+) -> Result<BTreeSet<String>, CommandFailure> {
+    let is_record = |topic: &str| topic == records::CYCLE.path() || topic == records::CHART.path();
+    let channels = overview.channels.iter().map(|counted| &counted.channel);
+    let recorded = channels.filter(|channel| is_record(&channel.topic));
+    let mut agents: BTreeSet<String> = recorded.map(|channel| channel.publisher.clone()).collect();
+    for message in recording.messages().map_err(failed(format))? {
+        let message = message.map_err(failed(format))?;
+        if message.channel.topic == TOPIC {
+            let log = read(message.bytes, format)?;
+            agents.insert(LogLine::new("", message.published, &log).agent.to_owned());
+        }
+    }
+    Ok(agents)
 }
 
 /// Follows a run.
@@ -178,6 +203,17 @@ impl LogArguments {
         match self.robots.iter().find(|robot| !hosts.contains(&robot.as_str())) {
             Some(unknown) => {
                 Err(CommandFailure::unknown_name(place, "robot", unknown, hosts.iter().copied()))
+            }
+            None => Ok(()),
+        }
+    }
+
+    /// Refuses agents that do not exist.
+    fn check_agents(&self, agents: &BTreeSet<String>) -> Result<(), CommandFailure> {
+        match self.agents.iter().find(|agent| !agents.contains(*agent)) {
+            Some(unknown) => {
+                let known = agents.iter().map(String::as_str);
+                Err(CommandFailure::unknown_name("tape", "agent", unknown, known))
             }
             None => Ok(()),
         }

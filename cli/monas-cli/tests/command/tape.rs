@@ -126,6 +126,9 @@ fn a_tape_is_verified_as_a_whole_and_its_log_is_read() {
     let unknown = monas(&["log", &tape(), "--robot", "blue-1", "--robot", "blu-2"]);
     let expected = "the tape has no robot `blu-2`; did you mean `blue-2`?";
     assert!(unknown.code == Some(2) && unknown.err.contains(expected), "{unknown:?}");
+    let unknown = monas(&["log", &tape(), "--agent", "Goalie", "--agent", "Gaolie"]);
+    let expected = "the tape has no agent `Gaolie`; did you mean `Goalie`?";
+    assert!(unknown.code == Some(2) && unknown.err.contains(expected), "{unknown:?}");
     assert!(lines(&["--level", "warning"]).len() < all.len());
     let text = done(&["log", &tape(), "--robot", "blue-1", "--count", "1"]).out;
     assert!(text.contains(" s ") && text.contains(" blue-1 Goalie"), "{text}");
