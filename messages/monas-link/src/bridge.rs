@@ -31,15 +31,14 @@ impl HubBridge {
     /// # Errors
     /// The settings do not fit the hub's topics.
     pub fn new(hub: &Hub, settings: LinkSettings, incarnation: u64) -> Result<HubBridge, Error> {
-        let ResolvedSettings { node, publish_as: places } =
-            ResolvedSettings::new(settings, hub, incarnation)?;
+        let ResolvedSettings { node, publish_as } = ResolvedSettings::new(settings, hub, incarnation)?;
         let node = Node::new(node)?;
         let tap = |path: &str| {
             hub.encoded_subscriber(path).map_err(|error| Error::new(ErrorKind::Settings, error.to_string()))
         };
         let taps = node.sends().iter().map(|topic| tap(&topic.path)).collect::<Result<_, _>>()?;
-        let (others, own) = (BTreeMap::new(), BTreeMap::new());
-        Ok(HubBridge { hub: hub.clone(), node, taps, publish_as: places, receivers: others, publishers: own })
+        let (receivers, publishers) = (BTreeMap::new(), BTreeMap::new());
+        Ok(HubBridge { hub: hub.clone(), node, taps, publish_as, receivers, publishers })
     }
 
     /// The protocol state with its counters.

@@ -118,14 +118,14 @@ impl RealTimeHost {
         profiles: Vec<AgentProfile>,
         configuration: Option<Arc<yase::Source>>,
     ) -> Result<RealTimeHost, Error> {
-        let HostSite { hub, host: place, clock, safe_state: rests, supervisor: line } = site;
+        let HostSite { hub, host, clock, safe_state, supervisor } = site;
         let team = AgentThreads {
             hub,
-            host: place,
+            host,
             clock,
-            safe_state: rests,
+            safe_state,
             linked: Vec::new(),
-            supervisor: line,
+            supervisor,
             handles: Vec::new(),
             removed: Vec::new(),
         };

@@ -4,14 +4,15 @@ use crate::{Error, ErrorKind};
 
 /// A position in a packet.
 pub(crate) struct PacketReader<'a> {
+    /// The name of the packet, for errors.
     packet: &'static str,
     rest: &'a [u8],
 }
 
 impl<'a> PacketReader<'a> {
-    /// Begins to read a packet; `what` names it in errors.
-    pub(crate) fn new(what: &'static str, packet: &'a [u8]) -> PacketReader<'a> {
-        PacketReader { packet: what, rest: packet }
+    /// Begins to read the bytes of a packet.
+    pub(crate) fn new(packet: &'static str, bytes: &'a [u8]) -> PacketReader<'a> {
+        PacketReader { packet, rest: bytes }
     }
 
     /// The next bytes.

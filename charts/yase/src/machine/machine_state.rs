@@ -232,8 +232,8 @@ impl MachineState {
         let MachineState {
             status,
             now,
-            needs_step: due,
-            step_in_progress: under_way,
+            needs_step,
+            step_in_progress,
             active,
             running,
             running_regions,
@@ -241,47 +241,48 @@ impl MachineState {
             timers,
             queues,
             pending,
-            failed_guards: erred,
+            failed_guards,
             reported_failures: _,
             drawn_segments: _,
             written,
             waiting_starts,
-            regions_to_enter: newcomers,
-            livelock_limit: bound,
+            regions_to_enter,
+            livelock_limit,
             chooser,
-            active_leaves: tips,
+            active_leaves,
             vacated,
             arrived,
             completions,
             records,
-            root_is_final: ending,
+            root_is_final,
             terminates,
             failure,
-            previous_configuration: before,
+            previous_configuration,
             marked,
             entering,
             incomplete: _,
             ending_early: _,
             starting: _,
             leaving,
-            document_order: in_document,
-            unbound_timers: unbound,
+            document_order,
+            unbound_timers,
             selection: _,
             log: _,
             text: _,
         } = other;
-        (self.status, self.now, self.needs_step) = (*status, *now, *due);
-        (self.step_in_progress, self.root_is_final, self.terminates) = (*under_way, *ending, *terminates);
+        (self.status, self.now, self.needs_step) = (*status, *now, *needs_step);
+        (self.step_in_progress, self.root_is_final, self.terminates) =
+            (*step_in_progress, *root_is_final, *terminates);
         let sets = [
             active,
             running,
             running_regions,
             written,
             waiting_starts,
-            tips,
+            active_leaves,
             vacated,
             arrived,
-            before,
+            previous_configuration,
             marked,
         ];
         let own = [
@@ -301,17 +302,17 @@ impl MachineState {
         self.timers.copy_from(timers);
         self.queues.clone_from(queues);
         self.pending.clone_from(pending);
-        self.failed_guards.clone_from(erred);
-        self.regions_to_enter.clone_from(newcomers);
-        self.livelock_limit.clone_from(bound);
+        self.failed_guards.clone_from(failed_guards);
+        self.regions_to_enter.clone_from(regions_to_enter);
+        self.livelock_limit.clone_from(livelock_limit);
         self.chooser.clone_from(chooser);
         self.completions.clone_from(completions);
         self.records.clone_from(records);
         self.failure.clone_from(failure);
         self.entering.clone_from(entering);
         self.leaving.clone_from(leaving);
-        self.document_order.clone_from(in_document);
-        self.unbound_timers.clone_from(unbound);
+        self.document_order.clone_from(document_order);
+        self.unbound_timers.clone_from(unbound_timers);
     }
 
     /// Discards everything except the number of activities started so far.

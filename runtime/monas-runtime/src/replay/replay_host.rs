@@ -82,7 +82,7 @@ pub(crate) struct ReplayHost {
     agents: Vec<ReplayedAgent>,
     /// The names of all agents, replayed or not, in the order of their turns.
     turn_order: Vec<String>,
-    /// Index in `places` of the agent whose turn it is.
+    /// Index in `turn_order` of the agent whose turn it is.
     turn: Option<usize>,
     pub(crate) now: Timestamp,
     /// Whether no agent has run yet: records of the agents before that belong to no turn.
@@ -113,9 +113,9 @@ impl ReplayHost {
             .map(|one| one.publisher.clone())
             .chain(members.iter().map(|member| member.name.clone()))
             .collect();
-        let places: Vec<String> = names.into_iter().collect();
+        let turn_order: Vec<String> = names.into_iter().collect();
         let replayed = |member: super::super::agent_factory::PreparedAgent| {
-            let place = places.binary_search(&member.name).unwrap_or_default();
+            let place = turn_order.binary_search(&member.name).unwrap_or_default();
             let window = MomentComparison::new(hub.host(), &member.name);
             ReplayedAgent {
                 turn: place,
@@ -132,7 +132,7 @@ impl ReplayHost {
             returned_by: None,
             refused: None,
             agents,
-            turn_order: places,
+            turn_order,
             turn: None,
             now: Timestamp::ZERO,
             is_setting_up: true,
@@ -322,7 +322,7 @@ impl ReplayHost {
         self.turn = Some(place);
     }
 
-    /// Executes the turns of the agents between two places that have something to do.
+    /// Executes the turns of the agents between two positions that have something to do.
     fn run_due(&mut self, after: Option<usize>, before: Option<usize>, output: &OutputCapture) {
         self.deliver_publications();
         for agent in 0..self.agents.len() {

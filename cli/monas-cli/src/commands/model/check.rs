@@ -130,7 +130,7 @@ const STOPPED_NOTE: &str = ", checks not finished (stopped, or the limit of time
 /// errors.
 fn text(
     reports: &[(&Path, CheckReport)],
-    is_told: bool,
+    has_summary: bool,
     console: &mut CommandOutput<'_>,
 ) -> Result<(), CommandFailure> {
     for (path, report) in reports {
@@ -138,7 +138,7 @@ fn text(
             report::write(console, Format::Text, std::slice::from_ref(&finding.diagnostic))?;
             finding::way_there(finding, console)?;
         }
-        if let Some(what) = report.kind.as_ref().filter(|_| is_told && !report.has_errors()) {
+        if let Some(what) = report.kind.as_ref().filter(|_| has_summary && !report.has_errors()) {
             writeln!(
                 console.out,
                 "{}: {what}{}{}, no errors",
@@ -151,11 +151,11 @@ fn text(
     Ok(())
 }
 
-/// One object per line; a finding with a trace has it as `trace`. Without properties one line more
-/// for each model that could be read: whether its checks are finished.
+/// One object per line; a finding with a trace has it as `trace`. Without properties each model
+/// that could be read has another line, which says whether its checks are finished.
 fn json(
     reports: &[(&Path, CheckReport)],
-    is_told: bool,
+    has_summary: bool,
     console: &mut CommandOutput<'_>,
 ) -> Result<(), CommandFailure> {
     let findings = reports.iter().flat_map(|(_, report)| report.findings.iter().map(move |it| (it, report)));
@@ -167,7 +167,7 @@ fn json(
         }
         writeln!(console.err, "{object}")?;
     }
-    for (path, report) in reports.iter().filter(|(_, report)| is_told && !report.is_unreadable()) {
+    for (path, report) in reports.iter().filter(|(_, report)| has_summary && !report.is_unreadable()) {
         let explored = report.explored.as_ref();
         let is_finished = !report.is_stopped && explored.is_none_or(|explored| explored.is_finished);
         let states = explored.map(|explored| explored.states);
