@@ -232,13 +232,15 @@ const TESTS = {
     await shot(page, 'topics');
   },
 
-  async 'the chosen agent and topic stay chosen when one comes back'({ page }) {
+  async 'agent, topic, filter and plot stay chosen when one comes back'({ page }) {
     await page.locator('h2').first().click();
     await page.keyboard.press('2');
     await page.locator('tr.chosen', { hasText: 'blue-2' }).waitFor();
     await page.keyboard.press('3');
     await page.locator('tr.chosen', { hasText: 'blue-2' }).waitFor();
     await until(page, 'its messages', () => /distance/.test(document.querySelector('.message')?.textContent ?? ''));
+    assert.equal(await page.getByLabel('Filter topics').inputValue(), 'soccer/ball');
+    await until(page, 'the plot', () => document.querySelector('.u-over'));
   },
 
   async 'looking back, no later message is shown, and the age of figures is said'({ page }) {
@@ -264,6 +266,10 @@ const TESTS = {
     await page.getByLabel('Filter lines').fill('motion');
     await until(page, 'lines with the word', () => document.querySelector('.line'));
     await shot(page, 'log');
+    await page.locator('h2').first().click();
+    await page.keyboard.press('1');
+    await page.keyboard.press('4');
+    assert.equal(await page.getByLabel('Filter lines').inputValue(), 'motion');
   },
 
   async 'help, light and dark'({ page }) {
