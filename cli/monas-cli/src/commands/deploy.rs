@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueHint};
 use monas_deploy::{Deployment, ErrorKind, Release, Robot, build_program, find_robot, missing_modules};
-use monas_terminal::{CommandFailure, CommandOutput, Exit, Format, FormatArgument, failed};
+use monas_terminal::{CommandFailure, CommandOutput, Exit, Format, FormatArgument, counted, failed};
 use serde_json::json;
 
 use crate::input::{checked, grammar};
@@ -82,7 +82,12 @@ fn deploy(
                 true => "copied, hashes verified",
                 false => "already there",
             };
-            writeln!(console.out, "{}: release {name}, {files} files, {bytes} bytes: {copied}", robot.name)?;
+            writeln!(
+                console.out,
+                "{}: release {name}, {}, {bytes} bytes: {copied}",
+                robot.name,
+                counted(files as u64, "file")
+            )?;
             let before = installed.previous.map(|before| format!(" instead of {before}"));
             writeln!(console.out, "{}: it runs{} ({service})", robot.name, before.unwrap_or_default())?;
         }

@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueHint};
 use monas::config::Layers;
-use monas_terminal::{CommandFailure, CommandOutput, Exit, Format, FormatArgument, report};
+use monas_terminal::{CommandFailure, CommandOutput, Exit, Format, FormatArgument, counted, report};
 use serde_json::json;
 use yase::Diagnostic;
 
@@ -110,7 +110,7 @@ const CONFIGURATION: &str = "configuration";
 fn configuration(arguments: &DoctorArguments) -> (CheckResult, Vec<Diagnostic>) {
     let path = &arguments.config;
     let name = monas::config::shown_name(path);
-    if !arguments.has_configuration() {
+    if !arguments.has_configuration() && path == Path::new(DEFAULT_CONFIGURATION) {
         let hint = "give one: `monas doctor FILE`, or create a project: `monas new my-team`";
         return (CheckResult::warning(CONFIGURATION, format!("there is no {name}"), hint), Vec::new());
     }
@@ -127,7 +127,11 @@ fn configuration(arguments: &DoctorArguments) -> (CheckResult, Vec<Diagnostic>) 
     let errors = diagnostics.iter().filter(|diagnostic| diagnostic.is_error()).count();
     let finding = match errors {
         0 => CheckResult::ok(CONFIGURATION, format!("{name} is valid")),
-        _ => CheckResult::error(CONFIGURATION, format!("{name}: {errors} errors"), "listed below"),
+        _ => CheckResult::error(
+            CONFIGURATION,
+            format!("{name}: {}", counted(errors as u64, "error")),
+            "listed below",
+        ),
     };
     (finding, diagnostics)
 }

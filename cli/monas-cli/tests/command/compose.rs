@@ -78,7 +78,9 @@ fn players_of_a_protocol_are_held_against_it_and_each_part_is_taken() {
     let unplayed =
         monas(&["model", "compose", "models/goalie.srm", "models/attacker.srm", protocol[0], protocol[1]]);
     assert!(
-        unplayed.code == Some(5) && unplayed.err.contains("no robot takes the part `center_for`"),
+        unplayed.code == Some(5)
+            && unplayed.err.contains("no robot takes the part `center_for`")
+            && unplayed.err.contains("models/attack.eac:"),
         "{unplayed:?}"
     );
     let folder = tempfile::tempdir().expect("a folder");

@@ -4,7 +4,7 @@ use std::fs;
 
 use serde_json::Value;
 
-use crate::kit::{changed, monas};
+use crate::kit::{changed, command, monas};
 
 /// Area and state of each finding.
 fn findings(arguments: &[&str]) -> (Option<i32>, Vec<(String, String, String)>) {
@@ -35,12 +35,17 @@ fn a_configuration_that_is_wrong_ends_with_3_and_is_explained() {
     let answer = monas(&["doctor", &file]);
     assert_eq!(answer.code, Some(3), "{}", answer.out);
     assert!(
-        answer.out.contains("1 errors") && answer.err.contains("did you mean `models/goalie.srm`?"),
+        answer.out.contains("1 error\n") && answer.err.contains("did you mean `models/goalie.srm`?"),
         "{}",
         answer.err
     );
     let (code, found) = findings(&["nowhere.xml"]);
-    assert_eq!((code, found.last().map(|found| found.1.as_str())), (Some(0), Some("warning")));
+    let configuration = found.iter().find(|found| found.0 == "configuration");
+    assert_eq!((code, configuration.map(|found| found.1.as_str())), (Some(3), Some("error")), "{found:?}");
+    let empty = tempfile::tempdir().expect("a folder");
+    let answer = command(&["doctor"]).current_dir(&empty).output().expect("monas runs");
+    let out = String::from_utf8_lossy(&answer.stdout);
+    assert!(answer.status.success() && out.contains("there is no config/agents.xml"), "{out}");
 }
 
 #[test]

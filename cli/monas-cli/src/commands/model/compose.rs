@@ -9,10 +9,11 @@ use aseme_models::iac::ChartKind;
 use aseme_verify::composition::{Channels, Composition, compose};
 use aseme_verify::{CheckSettings, protocol::parts_taken};
 use clap::{Args, ValueHint};
-use monas_terminal::{CommandFailure, CommandOutput, Exit, Format, FormatArgument, report};
+use monas_terminal::{CommandFailure, CommandOutput, Exit, Format, FormatArgument, counted, report};
 use serde_json::json;
-use yase::Source;
+use yase::{Diagnostic, Source, Span};
 
+use super::conform::NamedChart;
 use super::exploration::ExplorationArguments;
 use super::robot_file::{name_of, named};
 use super::{conform, finding, program};
@@ -141,16 +142,25 @@ impl Participants {
         missing.sort_unstable();
         missing.dedup();
         missing.retain(|name| !taken.iter().any(|(other, is_taken)| other == name && *is_taken));
-        let found: Vec<yase::Diagnostic> = missing.iter().map(|name| unplayed_role(name)).collect();
+        let found: Vec<Diagnostic> = missing.iter().map(|name| unplayed_role(name, &charts)).collect();
         report::write(console, format, &found)?;
         Ok(is_given && found.is_empty())
     }
 }
 
-fn unplayed_role(name: &str) -> yase::Diagnostic {
+/// The error for a part that no robot takes, at the part in its protocol.
+fn unplayed_role(name: &str, charts: &[NamedChart]) -> Diagnostic {
     let message = format!("no robot takes the part `{name}` in the protocol");
-    let found = yase::Diagnostic::error("E0936", yase::Span::default(), message);
-    found.with_hint("compose it with a role that has a composite of that name")
+    let mut nodes =
+        charts.iter().flat_map(|(_, source, chart)| chart.nodes.iter().map(move |node| (source, node)));
+    let part = nodes.find(|(_, node)| node.name == name);
+    let span = part.map_or_else(Span::default, |(_, node)| node.position.0);
+    let found = Diagnostic::error("E0936", span, message)
+        .with_hint("compose it with a role that has a composite of that name");
+    match part {
+        Some((source, _)) => found.in_source(source),
+        None => found,
+    }
 }
 
 fn player(path: &Path, format: Format, console: &mut CommandOutput<'_>) -> Result<Iac, CommandFailure> {
@@ -160,7 +170,7 @@ fn player(path: &Path, format: Format, console: &mut CommandOutput<'_>) -> Resul
 fn text(found: &Composition, console: &mut CommandOutput<'_>) -> Result<(), CommandFailure> {
     for finding in &found.findings {
         report::write(console, Format::Text, std::slice::from_ref(&finding.diagnostic))?;
-        finding::way_there(finding, console)?;
+        finding::print_trace(finding, console)?;
     }
     if found.is_one_process {
         let note = "no chart reads a message by the name of a robot: these are agents of one process";
@@ -173,7 +183,7 @@ fn text(found: &Composition, console: &mut CommandOutput<'_>) -> Result<(), Comm
         writeln!(console.out, "no message passes between robots: no chart reads one by the name of a robot")?;
     }
     for (name, states) in &found.robots {
-        writeln!(console.out, "{name}: {states} states explored")?;
+        writeln!(console.out, "{name}: {} explored", counted(*states as u64, "state"))?;
     }
     if !found.has_errors() {
         writeln!(console.out, "no deadlock; all {} states of the composition were explored", found.states)?;

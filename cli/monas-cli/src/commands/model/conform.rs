@@ -55,7 +55,8 @@ pub(crate) fn conform(
     Ok(if is_given { Exit::Success } else { Exit::Diverged })
 }
 
-type NamedChart = (PathBuf, Arc<Source>, Iac);
+/// A chart of a protocol with the file that it is from.
+pub(crate) type NamedChart = (PathBuf, Arc<Source>, Iac);
 
 /// The models of the files, by kind.
 pub(crate) struct LoadedModels {

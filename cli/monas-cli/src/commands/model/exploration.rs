@@ -7,7 +7,7 @@ use std::time::Duration;
 use aseme_verify::{CheckProgress, CheckSettings, ExplorationExtent, ProgressObserver};
 use clap::Args;
 use indicatif::ProgressBar;
-use monas_terminal::{CommandFailure, CommandOutput, Format, Interrupt, WallClock};
+use monas_terminal::{CommandFailure, CommandOutput, Format, Interrupt, WallClock, counted};
 use yase_explore::{ExplorationProgress, ExplorationStop};
 
 /// The time after which progress is shown first, if standard error is a terminal.
@@ -104,7 +104,7 @@ impl Drop for ProgressDisplay {
 pub(crate) fn extent(explored: Option<&ExplorationExtent>) -> String {
     let Some(explored) = explored else { return String::new() };
     let why = match explored.stop {
-        None => return format!(", {} states explored", explored.states),
+        None => return format!(", {} explored", counted(explored.states as u64, "state")),
         Some(ExplorationStop::States) => "the limit of states; see `--states`".to_owned(),
         Some(ExplorationStop::Bytes) => "the limit of memory; see `--memory`".to_owned(),
         Some(ExplorationStop::Observer) => "stopped, or the limit of time; see `--seconds`".to_owned(),
@@ -117,5 +117,5 @@ pub(crate) fn extent(explored: Option<&ExplorationExtent>) -> String {
             )
         }
     };
-    format!(", exploration not finished: {} states ({why})", explored.states)
+    format!(", exploration not finished: {} ({why})", counted(explored.states as u64, "state"))
 }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use aseme_models::convert::{Format as ModelFormat, Model};
-use monas_terminal::{CommandFailure, CommandOutput, Format, report};
+use monas_terminal::{CommandFailure, CommandOutput, Format, counted, report};
 use yase::{Diagnostic, Severity, Source};
 
 /// The format of a name.
@@ -40,7 +40,8 @@ pub(crate) fn text_of(
     match count > 0 && !lossy {
         true => {
             let message = format!(
-                "{count} elements would be lost in {}; --lossy writes it without them",
+                "{} would be lost in {}; --lossy writes it without them",
+                counted(count as u64, "element"),
                 wanted.word()
             );
             Err(CommandFailure::Failed(format, message))

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use aseme_verify::properties::{self, PropertyOutcome, PropertyResult};
 use aseme_verify::{CheckSettings, check::CheckReport};
 use monas::config;
-use monas_terminal::{CommandFailure, CommandOutput};
+use monas_terminal::{CommandFailure, CommandOutput, counted};
 use serde_json::json;
 use yase::Source;
 
@@ -88,8 +88,9 @@ pub(crate) fn text(
     console: &mut CommandOutput<'_>,
 ) -> Result<(), CommandFailure> {
     for CheckedProperty { model, judgement } in judged {
-        let (model, outcome, states) = (config::shown_name(model), word(judgement.outcome), judgement.states);
-        writeln!(console.out, "{model}: `{}` {outcome}; {states} states explored", judgement.name)?;
+        let (model, outcome) = (config::shown_name(model), word(judgement.outcome));
+        let states = counted(judgement.states as u64, "state");
+        writeln!(console.out, "{model}: `{}` {outcome}; {states} explored", judgement.name)?;
     }
     Ok(())
 }
