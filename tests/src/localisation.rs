@@ -23,7 +23,7 @@ const PLAY_TIME: f64 = 5.0;
 #[derive(Clone, PartialEq, Debug, Default)]
 pub struct PoseErrors {
     /// Of the place, metres.
-    pub places: Vec<f64>,
+    pub distances: Vec<f64>,
     /// Of the heading, radians.
     pub turns: Vec<f64>,
 }
@@ -85,9 +85,9 @@ impl PoseMatch {
             let state = &world.robots()[robot];
             let plays = state.on_field && world.referee().state() == GameState::Playing;
             let truth = in_frame_of_team(world, robot);
-            let place = (truth.position - Vector::new(pose.x, pose.y)).norm();
+            let distance = (truth.position - Vector::new(pose.x, pose.y)).norm();
             let turn = libm::remainder(truth.heading - pose.heading, std::f64::consts::TAU).abs();
-            plays.then_some((place, turn))
+            plays.then_some((distance, turn))
         })
     }
 
@@ -114,8 +114,8 @@ pub fn pose_errors(variant: &Variant, seed: u64, length: Duration) -> Result<Pos
     while game.now < length {
         game.advance()?;
         for robot in 0..game.robots() {
-            if let Some((place, turn)) = game.error(robot) {
-                errors.places.push(place);
+            if let Some((distance, turn)) = game.error(robot) {
+                errors.distances.push(distance);
                 errors.turns.push(turn);
             }
         }
@@ -147,17 +147,17 @@ pub fn kidnap(variant: &Variant, seed: u64, length: Duration) -> Result<Kidnappi
             victim = if plays { victim } else { (victim + 1) % game.robots() };
             continue;
         }
-        let place = Pose::new(5.0 * roll() - 2.5, 3.4 * roll() - 1.7, std::f64::consts::TAU * roll());
+        let pose = Pose::new(5.0 * roll() - 2.5, 3.4 * roll() - 1.7, std::f64::consts::TAU * roll());
         let is_free = game.running.pitch().with_world(|world| {
             let robots = world.robots().iter().map(|other| other.pose.position);
-            robots.chain([world.ball().position]).all(|other| (other - place.position).norm() > 0.4)
+            robots.chain([world.ball().position]).all(|other| (other - pose.position).norm() > 0.4)
         });
         if !is_free {
             continue;
         }
         game.running
             .pitch()
-            .change(|world| world.place_robot(victim, place))
+            .change(|world| world.place_robot(victim, pose))
             .map_err(|error| error.to_string())?;
         match recovery(&mut game, victim)? {
             Some(after) if after < WATCHED_TIME => result.recoveries.push(after),
@@ -177,8 +177,8 @@ fn recovery(game: &mut PoseMatch, robot: usize) -> Result<Option<f64>, String> {
     while after < WATCHED_TIME {
         game.advance()?;
         after += COMPARISON_INTERVAL.as_secs_f64();
-        let Some((place, turn)) = game.error(robot) else { return Ok(None) };
-        if place > KNOWN_POSE_ERROR.0 || turn > KNOWN_POSE_ERROR.1 {
+        let Some((distance, turn)) = game.error(robot) else { return Ok(None) };
+        if distance > KNOWN_POSE_ERROR.0 || turn > KNOWN_POSE_ERROR.1 {
             known_since = None;
             continue;
         }

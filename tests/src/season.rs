@@ -127,7 +127,7 @@ impl SeasonPoses {
     }
 
     fn append(&mut self, other: SeasonPoses) {
-        self.errors.places.extend(other.errors.places);
+        self.errors.distances.extend(other.errors.distances);
         self.errors.turns.extend(other.errors.turns);
         self.kidnappings.recoveries.extend(other.kidnappings.recoveries);
         self.kidnappings.lost += other.kidnappings.lost;
@@ -141,7 +141,7 @@ impl SeasonPoses {
         let mut recoveries = self.kidnappings.recoveries.clone();
         recoveries.resize(recoveries.len() + self.kidnappings.lost, NOT_FOUND);
         vec![
-            at_most("pose error: metres, 95 % of the time", quantile(&self.errors.places, 0.95), 0.25),
+            at_most("pose error: metres, 95 % of the time", quantile(&self.errors.distances, 0.95), 0.25),
             at_most("pose error: radians, 95 % of the time", quantile(&self.errors.turns, 0.95), 0.25),
             at_most("recovery: seconds, nine of ten kidnapped robots", quantile(&recoveries, 0.9), 10.0),
         ]
@@ -217,7 +217,7 @@ impl SeasonTable {
             let _ = writeln!(text, "{what:<66} {value:>7.2} {relation} {bound:.2}");
         }
         if let Some(SeasonPoses { errors, kidnappings }) = &self.poses {
-            let (compared, found) = (errors.places.len(), kidnappings.recoveries.len());
+            let (compared, found) = (errors.distances.len(), kidnappings.recoveries.len());
             let _ = writeln!(
                 text,
                 "\n# Poses compared: {compared}. Robots carried away: {}, of which {} were lost for 30 s.",

@@ -1,10 +1,10 @@
-//! `cargo xtask eval-faults`: what finds a fault of behaviour first, for each of the three ways in
-//! which `monas eval` has a goalie and an attacker built.
+//! `cargo xtask eval-faults`: what finds a fault of behaviour first, for each of the three
+//! methodologies by which `monas eval` has a goalie and an attacker built.
 //!
-//! Each fault is a file in `soccer/monas-eval/faults`: what is wrong, its class, and for each way
-//! the smallest edit of its hand-written sources that makes it, or why it cannot be made. In a copy
-//! of the sources the stages of [`Bench`] run in the order in which a developer runs them; the
-//! first that differs from the unchanged way has found the fault.
+//! Each fault is a file in `soccer/monas-eval/faults`: what is wrong, its class, and for each
+//! methodology the smallest edit of its hand-written sources that makes it, or why it cannot be
+//! made. In a copy of the sources the stages of [`Bench`] run in the order in which a developer
+//! runs them; the first that differs from the unchanged methodology has found the fault.
 
 mod behaviour_patch;
 mod bench;
@@ -54,21 +54,27 @@ pub(crate) fn run(root: &Path, task: Task<'_>) -> Result<ExitCode, Box<dyn Error
         }
     }
     let bench = Bench::build(root)?;
-    for (change, way) in changes.iter().flat_map(|change| Methodology::ALL.map(|way| (change, way))) {
-        let seconds = bench.adopt(way, change)?.as_secs_f64();
-        println!("{:<24} {:<8} runs {seconds:.1} s after the edit, and passes", change.name, way.name());
+    for (change, methodology) in
+        changes.iter().flat_map(|change| Methodology::ALL.map(|methodology| (change, methodology)))
+    {
+        let seconds = bench.adopt(methodology, change)?.as_secs_f64();
+        println!(
+            "{:<24} {:<8} runs {seconds:.1} s after the edit, and passes",
+            change.name,
+            methodology.name()
+        );
     }
     let mut rows: Vec<Row<'_>> = Vec::new();
     for fault in &faults {
         let mut found = BTreeMap::new();
-        for (&way, edit) in &fault.edits {
+        for (&methodology, edit) in &fault.edits {
             let finder = match edit {
                 Edit::Diffs(_) => {
-                    let finding = bench.find(way, fault)?;
+                    let finding = bench.find(methodology, fault)?;
                     println!(
                         "{:<24} {:<8} {:<10} {}",
                         fault.name,
-                        way.name(),
+                        methodology.name(),
                         finding.finder.name(),
                         finding.evidence
                     );
@@ -76,7 +82,7 @@ pub(crate) fn run(root: &Path, task: Task<'_>) -> Result<ExitCode, Box<dyn Error
                 }
                 Edit::CannotBeMade(_) => None,
             };
-            found.insert(way, finder);
+            found.insert(methodology, finder);
         }
         rows.push((fault, found));
     }
@@ -95,13 +101,17 @@ pub(crate) fn run(root: &Path, task: Task<'_>) -> Result<ExitCode, Box<dyn Error
     Ok(ExitCode::SUCCESS)
 }
 
-/// The edits of each change request in the sources of each way, without tests.
+/// The edits of each change request in the sources of each methodology, without tests.
 fn change_table(changes: &[BehaviourPatch]) -> String {
     let mut text = String::new();
-    line(&mut text, "lines / places / files changed", Methodology::ALL.map(|way| way.name().to_owned()));
+    line(
+        &mut text,
+        "lines / places / files changed",
+        Methodology::ALL.map(|methodology| methodology.name().to_owned()),
+    );
     for change in changes {
-        let extent = |way| {
-            let (lines, places, files) = change.extent(way);
+        let extent = |methodology| {
+            let (lines, places, files) = change.extent(methodology);
             format!("{lines} / {places} / {files}")
         };
         line(&mut text, &change.class, Methodology::ALL.map(extent));
@@ -112,17 +122,18 @@ fn change_table(changes: &[BehaviourPatch]) -> String {
 /// The table of all faults, and how many each stage has found.
 fn table(rows: &[Row<'_>]) -> String {
     let mut text = String::new();
-    line(&mut text, "fault", Methodology::ALL.map(|way| way.name().to_owned()));
+    line(&mut text, "fault", Methodology::ALL.map(|methodology| methodology.name().to_owned()));
     for (fault, found) in rows {
-        let finder = |way| found.get(&way).copied().flatten().map_or("-", Finder::name).to_owned();
+        let finder =
+            |methodology| found.get(&methodology).copied().flatten().map_or("-", Finder::name).to_owned();
         line(&mut text, &fault.class, Methodology::ALL.map(finder));
     }
     text.push('\n');
     let count = |matches: &dyn Fn(Option<Finder>) -> bool| {
-        let of = |way: Methodology| {
-            rows.iter().filter(|(_, found)| matches(found.get(&way).copied().flatten())).count()
+        let of = |methodology: Methodology| {
+            rows.iter().filter(|(_, found)| matches(found.get(&methodology).copied().flatten())).count()
         };
-        Methodology::ALL.map(|way| of(way).to_string())
+        Methodology::ALL.map(|methodology| of(methodology).to_string())
     };
     line(&mut text, "faults that can be made", count(&|finder| finder.is_some()));
     for finder in Finder::ALL {
@@ -150,12 +161,14 @@ mod tests {
         let root = crate::root();
         let faults = faults();
         assert!(faults.len() >= 12, "{} faults", faults.len());
-        for (fault, way) in faults.iter().flat_map(|fault| Methodology::ALL.map(|way| (fault, way))) {
-            let Edit::Diffs(_) = &fault.edits[&way] else { continue };
+        for (fault, methodology) in
+            faults.iter().flat_map(|fault| Methodology::ALL.map(|methodology| (fault, methodology)))
+        {
+            let Edit::Diffs(_) = &fault.edits[&methodology] else { continue };
             let read = |file: &str| Ok(fs::read_to_string(root.join(file))?);
-            let changed = fault.apply(way, read).unwrap_or_else(|error| panic!("{error}"));
+            let changed = fault.apply(methodology, read).unwrap_or_else(|error| panic!("{error}"));
             for (file, text) in changed {
-                assert!(way.owns(&file), "{}: {file} is not of {}", fault.name, way.name());
+                assert!(methodology.owns(&file), "{}: {file} is not of {}", fault.name, methodology.name());
                 assert_ne!(text, fs::read_to_string(root.join(&file)).unwrap(), "{}", fault.name);
             }
         }
@@ -166,10 +179,12 @@ mod tests {
         let root = crate::root();
         let changes = behaviour_patch::read(&root.join(CHANGES)).unwrap();
         assert!(changes.len() >= 3);
-        for (change, way) in changes.iter().flat_map(|change| Methodology::ALL.map(|way| (change, way))) {
+        for (change, methodology) in
+            changes.iter().flat_map(|change| Methodology::ALL.map(|methodology| (change, methodology)))
+        {
             let read = |file: &str| Ok(fs::read_to_string(root.join(file)).unwrap_or_default());
-            let changed = change.apply(way, read).unwrap_or_else(|error| panic!("{error}"));
-            assert!(changed.keys().any(|file| !way.owns(file)), "{} has no test", change.name);
+            let changed = change.apply(methodology, read).unwrap_or_else(|error| panic!("{error}"));
+            assert!(changed.keys().any(|file| !methodology.owns(file)), "{} has no test", change.name);
         }
         assert_eq!(change_table(&changes), fs::read_to_string(root.join(CHANGE_TABLE)).unwrap());
     }

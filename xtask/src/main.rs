@@ -26,7 +26,7 @@ cargo xtask NAME
   tidy --allowances  print the table of allowances for today's sources
   bodies             link each crate of a body under robots/ into the command `monas`
   faults             inject classic faults into a copy and check that the tests detect each
-  eval-faults        inject faults of behaviour into the ways of `monas eval`, write what finds each
+  eval-faults        inject faults of behaviour into the three programs of `monas eval`, write what finds each
   eval-faults --check
                      the same, and compare the result with its golden table
   eval-faults NAME   inject one of these faults, print what finds it

@@ -152,13 +152,13 @@ impl LabelledGraph {
     }
 
     /// The cause and choices of a step, by its index; `None` if there is no such step.
-    pub fn step(&self, place: usize) -> Option<&TraceStep> {
-        self.texts.get(self.steps.get(place)?.step)
+    pub fn step(&self, index: usize) -> Option<&TraceStep> {
+        self.texts.get(self.steps.get(index)?.step)
     }
 
     /// The trace of a path from the start, given by the indices of its steps.
-    pub fn trace_along(&self, way: &[usize]) -> Trace {
-        let steps = way.iter().filter_map(|&place| self.texts.get(self.steps.get(place)?.step).cloned());
+    pub fn trace_along(&self, indices: &[usize]) -> Trace {
+        let steps = indices.iter().filter_map(|&index| self.texts.get(self.steps.get(index)?.step).cloned());
         Trace::new(self.chart.clone(), steps.collect())
     }
 }
@@ -196,14 +196,14 @@ pub fn explore_labelled<'l>(
     };
     let start = TimedState { number: None, machine: Machine::new(chart.clone()), clocks: Vec::new() };
     search.steps(&start, &StepCause::Start, 0);
-    while let Some(place) = search.open.pop_front() {
+    while let Some(state) = search.open.pop_front() {
         if let Some(stop) = limits.stop(search.progress()) {
             search.found.stop = Some(stop);
             break;
         }
         search.known.clear();
-        for (cause, elapsed) in search.possible_causes(&place) {
-            search.steps(&place, &cause, elapsed);
+        for (cause, elapsed) in search.possible_causes(&state) {
+            search.steps(&state, &cause, elapsed);
         }
     }
     search.found
@@ -260,7 +260,7 @@ struct LabelledChoicePlan {
 impl LabelledSearch<'_, '_, '_> {
     fn progress(&self) -> ExplorationProgress {
         let steps = self.found.steps.len() * size_of::<LabelledStep>();
-        let frontier = self.open.front().map_or(0, |place| place.machine.estimated_bytes());
+        let frontier = self.open.front().map_or(0, |state| state.machine.estimated_bytes());
         ExplorationProgress {
             states: self.found.states.len(),
             open: self.open.len(),
@@ -269,14 +269,14 @@ impl LabelledSearch<'_, '_, '_> {
     }
 
     /// The possible causes of the next step, with the time until they occur.
-    fn possible_causes(&self, place: &TimedState) -> Vec<(StepCause, u64)> {
-        let machine = &place.machine;
+    fn possible_causes(&self, state: &TimedState) -> Vec<(StepCause, u64)> {
+        let machine = &state.machine;
         if machine.status() != Status::Running {
             return Vec::new();
         }
         let is_timed = self.labeler.pace.is_some();
-        let next = place.clocks.iter().map(|clock| clock.left).min();
-        let due = place.clocks.iter().filter(|clock| !is_timed || Some(clock.left) == next);
+        let next = state.clocks.iter().map(|clock| clock.left).min();
+        let due = state.clocks.iter().filter(|clock| !is_timed || Some(clock.left) == next);
         let elapsed = if is_timed { next.unwrap_or(0) } else { 0 };
         let mut moves: Vec<(StepCause, u64)> = due.map(|clock| (clock.of.ending_cause(), elapsed)).collect();
         // an event that is already queued would only lengthen the queue
@@ -358,8 +358,8 @@ impl LabelledSearch<'_, '_, '_> {
             conditions: &conditions,
         });
         let clocks = self.clocks(&machine, &started, &from.clocks, elapsed);
-        let place = TimedState { number: from.number, machine, clocks };
-        self.arrive(place, configuration, letter, elapsed, step);
+        let to = TimedState { number: from.number, machine, clocks };
+        self.arrive(to, configuration, letter, elapsed, step);
     }
 
     /// Activities and timers in progress after a step, with their remaining times if time is
@@ -417,8 +417,8 @@ impl LabelledSearch<'_, '_, '_> {
                 self.found.stop = Some(ExplorationStop::States);
                 return;
             }
-            Entry::Vacant(place) => {
-                place.insert(count);
+            Entry::Vacant(indices) => {
+                indices.insert(count);
                 let pending: Vec<PendingEvent> = clocks.iter().map(|clock| clock.of).collect();
                 self.bytes += bytes + size_of_val(&*configuration) + size_of_val(&*pending);
                 self.found.states.push(LabelledState { status: machine.status(), configuration, pending });
@@ -427,13 +427,13 @@ impl LabelledSearch<'_, '_, '_> {
             }
         };
         let ends = PendingEvent::ended_by(&step.cause);
-        if let Entry::Vacant(place) = self.known.entry((to, letter, elapsed, ends)) {
+        if let Entry::Vacant(index) = self.known.entry((to, letter, elapsed, ends)) {
             let texts = &mut self.found.texts;
             let step = *self.texts.entry(step).or_insert_with_key(|step| {
                 texts.push(step.clone());
                 texts.len() - 1
             });
-            place.insert(self.found.steps.len());
+            index.insert(self.found.steps.len());
             self.found.steps.push(LabelledStep { from, to, letter, elapsed, ends, step });
         }
     }

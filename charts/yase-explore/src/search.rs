@@ -251,8 +251,8 @@ impl StateSpaceSearch<'_, '_> {
         }
         let next = self.found.edges.len();
         match *self.known_edges.entry((edge.to, edge.returned)).or_insert(next) {
-            place if place == next => self.found.edges.push(edge),
-            place => self.found.edges[place].does_something |= edge.does_something,
+            number if number == next => self.found.edges.push(edge),
+            index => self.found.edges[index].does_something |= edge.does_something,
         }
     }
 

@@ -119,8 +119,8 @@ fn a_condition_has_one_value_in_a_step_and_any_in_the_next() {
     assert!(
         found.is_finished() && found.was_entered(sketch.node("c")) && found.was_entered(sketch.node("d"))
     );
-    let way = found.trace_to(found.first(|state| state.is_active(sketch.node("c"))).unwrap());
-    assert_eq!(way.to_string(), "start\nevent go\n  true   x\nevent go\n  false  x\n");
+    let trace = found.trace_to(found.first(|state| state.is_active(sketch.node("c"))).unwrap());
+    assert_eq!(trace.to_string(), "start\nevent go\n  true   x\nevent go\n  false  x\n");
 }
 
 #[test]
@@ -146,8 +146,8 @@ fn activities_return_and_timers_expire_in_any_order() {
             && found.was_entered(sketch.node("long"))
     );
     assert_eq!(found.states()[0].running, [sketch.node("Work")]);
-    let way = found.trace_to(found.first(|state| state.is_active(sketch.node("long"))).unwrap());
-    assert_eq!(way.to_string(), "start\nreturn Work\ntimer r two\n");
+    let trace = found.trace_to(found.first(|state| state.is_active(sketch.node("long"))).unwrap());
+    assert_eq!(trace.to_string(), "start\nreturn Work\ntimer r two\n");
 }
 
 #[test]
@@ -160,8 +160,8 @@ fn open_choices_are_explored_each_way() {
         sketch.chart.connect(Transition { expression, weight: Some(weight), ..transition });
     }
     let found = explore(&sketch.compile(), &mut events(&["toss"]), 100);
-    let way = found.trace_to(found.first(|state| state.is_active(sketch.node("c"))).unwrap());
-    assert_eq!(way.to_string(), "start\nevent toss\n  choose 1\n");
+    let trace = found.trace_to(found.first(|state| state.is_active(sketch.node("c"))).unwrap());
+    assert_eq!(trace.to_string(), "start\nevent toss\n  choose 1\n");
 }
 
 #[test]

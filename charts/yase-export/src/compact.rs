@@ -152,12 +152,12 @@ impl<'a> Compaction<'a> {
         let mut compact = Statechart::new(self.chart.name.clone());
         compact.constants.clone_from(&self.chart.constants);
         *compact.node_mut(Statechart::ROOT) = self.node(Statechart::ROOT).clone();
-        let mut places = BTreeMap::from([(Statechart::ROOT, Statechart::ROOT)]);
+        let mut nodes = BTreeMap::from([(Statechart::ROOT, Statechart::ROOT)]);
         let mut open: Vec<NodeId> = self.children[0].iter().rev().copied().collect();
         while let Some(id) = open.pop() {
-            let parent = self.node(id).parent.and_then(|parent| places.get(&parent).copied());
+            let parent = self.node(id).parent.and_then(|parent| nodes.get(&parent).copied());
             let new = compact.add(parent.unwrap_or(Statechart::ROOT), self.node(id).clone());
-            places.insert(id, new);
+            nodes.insert(id, new);
             let frame = self.chart.layout.frames.get(&id);
             if let Some(frame) = frame.filter(|_| self.node(id).parent == self.chart.node(id).parent) {
                 compact.layout.frames.insert(new, *frame);
@@ -165,7 +165,7 @@ impl<'a> Compaction<'a> {
             open.extend(self.children[id.0 as usize].iter().rev());
         }
         for (index, transition) in &self.transitions {
-            let ends = [transition.source, transition.target].map(|end| places.get(&end).copied());
+            let ends = [transition.source, transition.target].map(|end| nodes.get(&end).copied());
             let [Some(source), Some(target)] = ends else { continue };
             let id = compact.connect(Transition { source, target, ..(*transition).clone() });
             transitions.push(TransitionId(*index));
@@ -173,7 +173,7 @@ impl<'a> Compaction<'a> {
                 compact.layout.bends.insert(id, bends.clone());
             }
         }
-        CompactChart { chart: compact, nodes: places, transitions }
+        CompactChart { chart: compact, nodes, transitions }
     }
 }
 

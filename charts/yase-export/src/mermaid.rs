@@ -5,7 +5,8 @@ use super::ids::Ids;
 use super::loss_report::LossReport;
 use super::notation::{kind_word, refinements};
 use super::outline::{
-    IndentedText, TreeEvent, after_colon, by_parent, constants, is_region, one_line, place, title, visits,
+    IndentedText, TreeEvent, after_colon, by_parent, constants, is_region, one_line, sibling_number, title,
+    visits,
 };
 use yase::statechart::{NodeId, NodeKind, Statechart, Transition};
 
@@ -59,7 +60,7 @@ impl Mermaid<'_> {
 
     fn enter(&mut self, id: NodeId) {
         let (chart, node) = (self.chart, self.chart.node(id));
-        if is_region(chart, id) && place(chart, id) > 1 {
+        if is_region(chart, id) && sibling_number(chart, id) > 1 {
             self.lines.line(format_args!("--"));
         }
         match node.kind {

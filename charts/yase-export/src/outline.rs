@@ -58,7 +58,7 @@ pub(crate) fn is_region(chart: &Statechart, id: NodeId) -> bool {
 }
 
 /// The position of a node among its siblings, from 1.
-pub(crate) fn place(chart: &Statechart, id: NodeId) -> usize {
+pub(crate) fn sibling_number(chart: &Statechart, id: NodeId) -> usize {
     let siblings = chart.node(id).parent.map_or(&[][..], |parent| chart.children(parent));
     siblings.iter().position(|&sibling| sibling == id).map_or(1, |index| index + 1)
 }
@@ -67,7 +67,7 @@ pub(crate) fn place(chart: &Statechart, id: NodeId) -> usize {
 pub(crate) fn title(chart: &Statechart, id: NodeId) -> String {
     let node = chart.node(id);
     match node.name.as_str() {
-        "" if is_region(chart, id) => format!("region {}", place(chart, id)),
+        "" if is_region(chart, id) => format!("region {}", sibling_number(chart, id)),
         "" => kind_word(node.kind).to_owned(),
         name => name.to_owned(),
     }

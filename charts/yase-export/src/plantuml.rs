@@ -7,7 +7,8 @@ use super::ids::Ids;
 use super::loss_report::LossReport;
 use super::notation::{kind_word, refinements};
 use super::outline::{
-    IndentedText, TreeEvent, after_colon, constants, is_region, place, sound_transitions, title, visits,
+    IndentedText, TreeEvent, after_colon, constants, is_region, sibling_number, sound_transitions, title,
+    visits,
 };
 use yase::statechart::{NodeId, NodeKind, Statechart, Transition};
 
@@ -65,7 +66,7 @@ impl PlantUml<'_> {
 
     fn enter(&mut self, id: NodeId) {
         let (chart, node) = (self.chart, self.chart.node(id));
-        if self.is_divided(id) && place(chart, id) > 1 {
+        if self.is_divided(id) && sibling_number(chart, id) > 1 {
             self.lines.line(format_args!("--"));
         }
         if is_region(chart, id) && !self.is_divided(id) {

@@ -38,7 +38,7 @@ pub fn to_xstate(chart: &Statechart) -> Exported {
         Ok(lost) => lost,
         Err(nothing) => return nothing,
     };
-    let transitions = all_ways(chart, &mut lost);
+    let transitions = all_transition_paths(chart, &mut lost);
     let machine = XStateWriter {
         chart,
         ids: Ids::of(chart),
@@ -152,13 +152,13 @@ impl XStateWriter<'_> {
     /// Reports where XState treats the paths out of a node differently.
     fn compare(&mut self, id: NodeId) {
         let mut any = false;
-        for way in &self.transitions[id.0 as usize] {
-            let Some(first) = way.segments.first() else { continue };
+        for transition in &self.transitions[id.0 as usize] {
+            let Some(first) = transition.segments.first() else { continue };
             let arrow = self.lost.arrow(first);
-            if way.segments.iter().any(|segment| segment.weight.is_some()) {
+            if transition.segments.iter().any(|segment| segment.weight.is_some()) {
                 self.lost.of_transition(first, "the weight");
             }
-            match way.trigger() {
+            match transition.trigger() {
                 Some(Trigger::Any | Trigger::Not(_)) => {
                     any = true;
                     let message = format!(
@@ -173,12 +173,12 @@ impl XStateWriter<'_> {
                 }
                 _ => {}
             }
-            if let Some(Trigger::OneOf(events)) = way.trigger()
+            if let Some(Trigger::OneOf(events)) = transition.trigger()
                 && events.iter().any(|event| descriptor(event) != event.text())
             {
                 self.lost.of_transition(first, "the name of an event");
             }
-            if self.stops(id, way) {
+            if self.stops(id, transition) {
                 let message =
                     format!("{arrow} waits until activities have returned, in XState it stops them");
                 self.lost.moment(message);
@@ -216,7 +216,10 @@ fn descriptor(event: &Path) -> String {
 }
 
 /// The transition paths out of each node; their losses are recorded.
-fn all_ways<'a>(chart: &'a Statechart, lost: &mut LossReport<'_>) -> Vec<Vec<ResolvedTransition<'a>>> {
+fn all_transition_paths<'a>(
+    chart: &'a Statechart,
+    lost: &mut LossReport<'_>,
+) -> Vec<Vec<ResolvedTransition<'a>>> {
     let mut resolver = TransitionResolver::of(chart);
     let mut all = joins::joins(chart, &mut resolver, lost);
     for (id, _) in chart.nodes().filter(|&(id, _)| role(chart, id) == ConnectorRole::Rest) {
@@ -228,7 +231,7 @@ fn all_ways<'a>(chart: &'a Statechart, lost: &mut LossReport<'_>) -> Vec<Vec<Res
         transitions.retain(|transition| can_arrive(chart, transition, has_place, lost));
     }
     let mut reached = vec![false; chart.nodes().len()];
-    for connector in all.iter().flatten().flat_map(|way| way.via(chart)) {
+    for connector in all.iter().flatten().flat_map(|path| path.via(chart)) {
         reached[connector.0 as usize] = true;
     }
     for (id, _) in
@@ -284,8 +287,10 @@ fn running(chart: &Statechart) -> Vec<bool> {
 fn merged(chart: &Statechart, transitions: &[Vec<ResolvedTransition<'_>>]) -> Vec<bool> {
     let plain = |id: NodeId| {
         let node = chart.node(id);
-        let [way] = transitions[id.0 as usize].as_slice() else { return false };
-        let ([segment], [target]) = (way.segments.as_slice(), way.targets.as_slice()) else { return false };
+        let [transition] = transitions[id.0 as usize].as_slice() else { return false };
+        let ([segment], [target]) = (transition.segments.as_slice(), transition.targets.as_slice()) else {
+            return false;
+        };
         let (expression, target) = (&segment.expression, chart.node(*target));
         let rests = matches!(
             target.kind,
@@ -298,7 +303,7 @@ fn merged(chart: &Statechart, transitions: &[Vec<ResolvedTransition<'_>>]) -> Ve
             && rests
             && expression.trigger.is_none()
             && expression.guard.is_none()
-            && !is_region(chart, way.targets[0])
+            && !is_region(chart, transition.targets[0])
             && segment.weight.is_none()
     };
     let mut has_one = vec![false; chart.nodes().len()];

@@ -19,8 +19,8 @@ pub trait Field: Sized {
 ///
 /// # Errors
 /// The field cannot hold the value; it is left unchanged.
-pub fn set<T: Field>(place: &mut T, value: Value<'_>, field: &str) -> Result<(), CallError> {
-    *place = T::read(value, field)?;
+pub fn set<T: Field>(target: &mut T, value: Value<'_>, field: &str) -> Result<(), CallError> {
+    *target = T::read(value, field)?;
     Ok(())
 }
 

@@ -259,7 +259,7 @@ impl<'a> DocumentWriter<'a> {
         let transitions = self.out_of(start);
         let &[transition] = transitions.as_slice() else {
             self.refuse(format!(
-                "the START of `{path}` has {} ways out; in SCXML it has one",
+                "the START of `{path}` has {} outgoing transitions; in SCXML it has one",
                 transitions.len()
             ));
             return None;
@@ -292,9 +292,9 @@ impl<'a> DocumentWriter<'a> {
     }
 
     fn initial_element(&mut self, transition: Option<&Transition>) {
-        if let Some(way) = transition {
+        if let Some(own) = transition {
             self.writer.open("initial");
-            self.transition(way);
+            self.transition(own);
             self.writer.close();
         }
     }
@@ -316,13 +316,16 @@ impl<'a> DocumentWriter<'a> {
             if transition.expression.guard.is_some() || transition.expression.trigger.is_some() {
                 let path = self.names.name(id);
                 self.refuse(format!(
-                    "the way out of `{path}` has a guard or trigger, which SCXML cannot represent"
+                    "the outgoing transition of `{path}` has a guard or trigger, which SCXML cannot represent"
                 ));
             }
             self.transition(transition);
         } else {
             let path = self.names.name(id);
-            self.refuse(format!("`{path}` has {} ways out; in SCXML it has one", transitions.len()));
+            self.refuse(format!(
+                "`{path}` has {} outgoing transitions; in SCXML it has one",
+                transitions.len()
+            ));
         }
         self.writer.close();
     }
@@ -408,13 +411,13 @@ impl<'a> DocumentWriter<'a> {
         if self.incoming.get(&fork).copied().unwrap_or(0) > 1 {
             self.refuse(format!("several transitions lead to `{path}`, which SCXML cannot represent"));
         }
-        let ways = self.out_of(fork);
-        if ways.iter().any(|transition| !transition.expression.is_empty() || transition.internal) {
+        let transitions = self.out_of(fork);
+        if transitions.iter().any(|transition| !transition.expression.is_empty() || transition.internal) {
             self.refuse(format!(
                 "transitions out of `{path}` have triggers, guards or actions, which SCXML cannot represent"
             ));
         }
-        ways.iter().map(|way| way.target).collect()
+        transitions.iter().map(|transition| transition.target).collect()
     }
 
     fn block(&mut self, tag: &'static str, actions: &[Action], id: NodeId) {
@@ -428,11 +431,11 @@ impl<'a> DocumentWriter<'a> {
         }
     }
 
-    fn actions(&mut self, actions: &[Action], place: &str) {
+    fn actions(&mut self, actions: &[Action], owner: &str) {
         let scripts = actions.iter().filter(|action| matches!(action.kind, ActionKind::Script(_))).count();
         if scripts > 0 && actions.len() > 1 {
             self.refuse(format!(
-                "a script of `{place}` stands among other actions, which SCXML cannot represent"
+                "a script of `{owner}` stands among other actions, which SCXML cannot represent"
             ));
         }
         for action in actions {

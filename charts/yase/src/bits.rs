@@ -135,12 +135,12 @@ impl BitSet {
 
     /// The members, in ascending order.
     pub(crate) fn members(&self) -> impl Iterator<Item = usize> {
-        self.words().enumerate().flat_map(|(place, word)| {
+        self.words().enumerate().flat_map(|(index, word)| {
             let mut left = word;
             std::iter::from_fn(move || {
                 let bit = left.trailing_zeros() as usize;
                 left &= left.wrapping_sub(1);
-                (bit < BITS).then_some(place * BITS + bit)
+                (bit < BITS).then_some(index * BITS + bit)
             })
         })
     }

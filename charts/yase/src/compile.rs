@@ -289,8 +289,8 @@ impl CompoundTransition {
 
     /// Whether it leaves a node if that is active.
     #[inline]
-    pub(crate) fn leaves(&self, place: NodeIndex) -> bool {
-        self.exits.is_some_and(|(first, last)| first <= place && place <= last)
+    pub(crate) fn leaves(&self, node: NodeIndex) -> bool {
+        self.exits.is_some_and(|(first, last)| first <= node && node <= last)
     }
 
     /// Whether two compound transitions leave a common active state. A composite that was left
@@ -511,7 +511,7 @@ impl CompiledChart {
 
     /// The scope of a node; a region has its own.
     pub fn region_of(&self, node: NodeId) -> Option<ScopeId> {
-        self.layout.place(node).map(|place| self.states[place.index()].region)
+        self.layout.find_index(node).map(|index| self.states[index.index()].region)
     }
 
     /// The enclosing scope; none for the root.
@@ -522,8 +522,8 @@ impl CompiledChart {
     /// The scope whose node it is, if there is one: the inverse of
     /// [`region_node`](CompiledChart::region_node).
     pub fn region_at(&self, node: NodeId) -> Option<ScopeId> {
-        let place = self.layout.place(node)?;
-        let found = self.regions.iter().position(|region| region.root == place)?;
+        let index = self.layout.find_index(node)?;
+        let found = self.regions.iter().position(|region| region.root == index)?;
         Some(ScopeId(found as u32))
     }
 
@@ -535,14 +535,14 @@ impl CompiledChart {
 
     /// Every state with an activity, inner ones first, otherwise in document order.
     pub fn activities(&self) -> impl ExactSizeIterator<Item = ActivityEntry<'_>> {
-        self.activities.iter().map(|&place| self.activity_entry(place))
+        self.activities.iter().map(|&node| self.activity_entry(node))
     }
 
     /// The activity of a state, if it has one.
     pub fn activity(&self, node: NodeId) -> Option<ActivityEntry<'_>> {
-        let place = self.layout.place(node)?;
-        self.states[place.index()].activity?;
-        Some(self.activity_entry(place))
+        let index = self.layout.find_index(node)?;
+        self.states[index.index()].activity?;
+        Some(self.activity_entry(index))
     }
 
     /// Every timer that an action starts: its scope and its name.
@@ -568,8 +568,8 @@ impl CompiledChart {
             let effects = compound.effects.iter();
             effects.map(|(id, effects)| (ActionLocation::Transition(*id), compound.region, &**effects))
         });
-        let states = self.states.iter().zip(self.layout.places()).flat_map(|(state, place)| {
-            let node = self.layout.node(place);
+        let states = self.states.iter().zip(self.layout.indices()).flat_map(|(state, index)| {
+            let node = self.layout.node(index);
             let entry = (ActionLocation::Entry(node), state.region, &*state.entry);
             [entry, (ActionLocation::Exit(node), state.region, &*state.exit)]
         });
@@ -603,9 +603,9 @@ impl CompiledChart {
 
     /// The scripts of its conditions and actions, with their locations.
     pub fn scripts(&self) -> impl ExactSizeIterator<Item = ScriptEntry<'_>> {
-        self.script_places.iter().enumerate().map(|(id, places)| {
+        self.script_places.iter().enumerate().map(|(id, locations)| {
             let id = ScriptId(id as u32);
-            ScriptEntry { id, text: self.scripts.text(id), locations: places }
+            ScriptEntry { id, text: self.scripts.text(id), locations }
         })
     }
 
@@ -623,15 +623,15 @@ impl CompiledChart {
         }
     }
 
-    fn activity_entry(&self, place: NodeIndex) -> ActivityEntry<'_> {
-        let id = self.layout.node(place);
+    fn activity_entry(&self, index: NodeIndex) -> ActivityEntry<'_> {
+        let id = self.layout.node(index);
         let node = self.statechart.node(id);
         ActivityEntry {
             node: id,
             name: node.activity.as_deref().unwrap_or_default(),
             priority: node.priority,
             duration: node.duration,
-            region: self.states[place.index()].activity_region,
+            region: self.states[index.index()].activity_region,
         }
     }
 }

@@ -195,7 +195,7 @@ pub enum Notice<'a> {
     /// An action failed; the following ones are executed, and `error.action` is raised.
     ActionFailed {
         /// The location of the action list.
-        place: ActionLocation,
+        location: ActionLocation,
         /// The index in that list, from 0.
         index: usize,
         /// The cause.

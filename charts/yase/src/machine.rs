@@ -351,8 +351,8 @@ impl Machine {
 
     /// The deadline of a timer of a scope, past or future; none if it is not set.
     pub fn deadline(&self, region: ScopeId, timer: &str) -> Option<Timestamp> {
-        let place = self.chart.timers().position(|(board, name)| board == region && name == timer)?;
-        self.run.timers.slot(place).map(|deadline| deadline.moment)
+        let index = self.chart.timers().position(|(board, name)| board == region && name == timer)?;
+        self.run.timers.slot(index).map(|deadline| deadline.moment)
     }
 
     /// Whether a message on that topic can affect the chart: each must then be reported with
@@ -374,14 +374,14 @@ impl Machine {
     /// The active nodes in document order, composites before their children.
     pub fn configuration(&self) -> Vec<NodeId> {
         let layout = &self.chart.layout;
-        let mut places: Vec<_> = self.run.active.members().map(|place| NodeIndex(place as u32)).collect();
-        places.sort_by_key(|&place| layout.rank(place));
-        places.into_iter().map(|place| layout.node(place)).collect()
+        let mut nodes: Vec<_> = self.run.active.members().map(|index| NodeIndex(index as u32)).collect();
+        nodes.sort_by_key(|&node| layout.rank(node));
+        nodes.into_iter().map(|index| layout.node(index)).collect()
     }
 
     /// Whether a node is active.
     pub fn is_active(&self, node: NodeId) -> bool {
-        self.chart.layout.place(node).is_some_and(|place| self.run.active.contains(place.index()))
+        self.chart.layout.find_index(node).is_some_and(|index| self.run.active.contains(index.index()))
     }
 
     /// Whether a scope itself has a running activity: it then takes no transition, and nothing is

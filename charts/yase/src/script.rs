@@ -17,7 +17,7 @@ pub struct ActiveStates<'a> {
 impl ActiveStates<'_> {
     /// Whether a node is active.
     pub fn is_active(&self, node: NodeId) -> bool {
-        self.chart.layout.place(node).is_some_and(|place: NodeIndex| self.active.contains(place.index()))
+        self.chart.layout.find_index(node).is_some_and(|index: NodeIndex| self.active.contains(index.index()))
     }
 }
 

@@ -191,13 +191,13 @@ fn entry(path: &Path, robot: &Element) -> Result<Robot, Box<Diagnostic>> {
 /// The reason to refuse `--record` among the arguments: a relative path lies in a release, which is
 /// removed some day.
 fn misplaced_recording(arguments: &[String], is_recorded: bool) -> Option<String> {
-    let place = arguments.iter().position(|word| word == "--record" || word.starts_with("--record="))?;
+    let index = arguments.iter().position(|word| word == "--record" || word.starts_with("--record="))?;
     if is_recorded {
         return Some("the run is recorded twice: by `record` and by `--record`".into());
     }
-    let path = match arguments[place].split_once('=') {
+    let path = match arguments[index].split_once('=') {
         Some((_, path)) => path,
-        None => arguments.get(place + 1)?,
+        None => arguments.get(index + 1)?,
     };
     let is_absolute = path.starts_with('/');
     (!is_absolute).then(|| format!("the recording `{path}` would be in the release, and removed with it"))

@@ -43,7 +43,7 @@ impl CommandFailure {
 
     /// A name that does not exist in a tape or a configuration; lists the known ones.
     pub fn unknown_name<'a>(
-        place: &str,
+        source: &str,
         what: &str,
         name: &str,
         known: impl Iterator<Item = &'a str>,
@@ -56,7 +56,7 @@ impl CommandFailure {
             None if known.is_empty() => "it has none".to_owned(),
             None => format!("it has {}", known.join(", ")),
         };
-        CommandFailure::Usage(format!("the {place} has no {what} `{name}`; {hint}"))
+        CommandFailure::Usage(format!("the {source} has no {what} `{name}`; {hint}"))
     }
 
     /// Writes it on standard error, and returns the exit status.

@@ -105,13 +105,13 @@ fn drawn(diagnostic: &Diagnostic, colour: bool) -> String {
     if let (Some(source), Some((line, column))) = (&diagnostic.source, diagnostic.position()) {
         let number = line.to_string();
         margin += number.len();
-        let place = match source.text.is_empty() {
+        let position = match source.text.is_empty() {
             true => shown(&source.name),
             false => format!("{}:{line}:{column}", shown(&source.name)),
         };
         let (arrow, bar) = (paint("34", "-->"), paint("34", "|"));
         // Writing to a string does not fail.
-        let _ = write!(text, "\n{:>margin$}{arrow} {place}", "");
+        let _ = write!(text, "\n{:>margin$}{arrow} {position}", "");
         if !source.text.is_empty() {
             let (start, content) = source.line(diagnostic.span.start);
             let span = (

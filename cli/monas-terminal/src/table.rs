@@ -84,13 +84,13 @@ impl Table {
 
     fn lines(&self, row: &FoldedRow, widths: &[usize], gap: usize) -> Vec<String> {
         let height = row.iter().map(Vec::len).max().unwrap_or_default();
-        (0..height).map(|place| self.line(row, place, widths, gap)).collect()
+        (0..height).map(|index| self.line(row, index, widths, gap)).collect()
     }
 
-    fn line(&self, row: &FoldedRow, place: usize, widths: &[usize], gap: usize) -> String {
+    fn line(&self, row: &FoldedRow, index: usize, widths: &[usize], gap: usize) -> String {
         let mut line = String::new();
         for (column, (cell, &width)) in row.iter().zip(widths).enumerate() {
-            let text = cell.get(place).map(String::as_str).unwrap_or_default();
+            let text = cell.get(index).map(String::as_str).unwrap_or_default();
             let blank = " ".repeat(width.saturating_sub(text.width()));
             let (before, after) = if column < self.first_number { ("", &*blank) } else { (&*blank, "") };
             line += &format!("{before}{text}{after}{:gap$}", "");
@@ -125,7 +125,7 @@ pub fn columns() -> Option<usize> {
 fn words(text: &str, divides: bool) -> Vec<&str> {
     let mut words = Vec::new();
     let (mut start, mut last) = (0, None);
-    for (place, c) in text.char_indices() {
+    for (index, c) in text.char_indices() {
         let begins = match last {
             Some(' ' | '/' | '.' | ',' | '|') => c != ' ',
             Some('_') => divides,
@@ -133,8 +133,8 @@ fn words(text: &str, divides: bool) -> Vec<&str> {
             None => false,
         };
         if begins {
-            words.push(&text[start..place]);
-            start = place;
+            words.push(&text[start..index]);
+            start = index;
         }
         last = Some(c);
     }

@@ -29,9 +29,9 @@ struct SimulatedWarehouse {
 impl SimulatedWarehouse {
     fn step(&mut self, drive: &Drive, seconds: f64) {
         let Vehicle { position, charge, loaded } = &mut self.vehicle;
-        let way = if *charge > 0.0 { drive.speed * seconds } else { 0.0 };
-        *position += way;
-        *charge -= way.abs() * CHARGE_PER_METRE;
+        let distance = if *charge > 0.0 { drive.speed * seconds } else { 0.0 };
+        *position += distance;
+        *charge -= distance.abs() * CHARGE_PER_METRE;
         if (*position - CHARGER).abs() < POSITION_TOLERANCE && drive.speed == 0.0 {
             *charge += CHARGE_PER_SECOND * seconds;
         }

@@ -71,19 +71,19 @@ fn main() {
     table("A picture of 1 MiB, from host to host", rounds, 60, large);
 }
 
-fn table(title: &str, rounds: usize, count: usize, mut ways: Vec<MessagePath>) {
-    let mut figures = vec![Vec::new(); ways.len()];
+fn table(title: &str, rounds: usize, count: usize, mut paths: Vec<MessagePath>) {
+    let mut figures = vec![Vec::new(); paths.len()];
     for round in 0..=rounds {
-        for (way, figures) in ways.iter_mut().zip(&mut figures) {
-            let figure = way.round(count);
+        for (path, figures) in paths.iter_mut().zip(&mut figures) {
+            let figure = path.round(count);
             // The first round is a warm-up.
             figures.extend((round > 0).then_some(figure));
         }
     }
     println!("\n{title} ({rounds} rounds of {count}; median, smallest to largest)\n");
     println!("| | p50 µs | p99 µs | lost |\n|---|---:|---:|---:|");
-    for (way, figures) in ways.iter().zip(&figures) {
-        println!("| {} | {} | {} | {} |", way.name, cell(figures, 0), cell(figures, 1), way.lost);
+    for (path, figures) in paths.iter().zip(&figures) {
+        println!("| {} | {} | {} | {} |", path.name, cell(figures, 0), cell(figures, 1), path.lost);
     }
 }
 
@@ -247,11 +247,11 @@ impl Pair {
     }
 }
 
-fn session(way: &str, port: u16, is_shared: bool) -> Session {
+fn session(direction: &str, port: u16, is_shared: bool) -> Session {
     let mut config = zenoh::Config::default();
     let mut set = |key: &str, value: &str| config.insert_json5(key, value).unwrap();
     set("listen/endpoints", "[]");
-    set(&format!("{way}/endpoints"), &format!("[\"tcp/127.0.0.1:{port}\"]"));
+    set(&format!("{direction}/endpoints"), &format!("[\"tcp/127.0.0.1:{port}\"]"));
     set("scouting/multicast/enabled", "false");
     set("scouting/gossip/enabled", "false");
     set("transport/shared_memory/enabled", &is_shared.to_string());

@@ -29,7 +29,7 @@ topic! {
 fn main() -> Result<(), Box<dyn Error>> {
     let words: Vec<String> = std::env::args().skip(1).collect();
     let words: Vec<&str> = words.iter().map(String::as_str).collect();
-    let [role, way, place] = words[..] else {
+    let [role, transport_name, address] = words[..] else {
         return Err("usage: player robot|coach local|listen|connect PLACE".into());
     };
     let is_robot = match role {
@@ -45,7 +45,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         settings.sending("soccer/command").receiving("soccer/ball")
     };
     let start = now();
-    let connect = |bridge: &HubBridge, inbox| transport(way, place, bridge, inbox);
+    let connect = |bridge: &HubBridge, inbox| transport(transport_name, address, bridge, inbox);
     let link = Link::start(&hub, settings, connect, move || now_since(start))?;
     hub.set_waker(link.waker());
     let (holder, ended) = channel();
@@ -122,24 +122,25 @@ fn print(report: &LinkReport) {
 }
 
 fn transport(
-    way: &str,
-    place: &str,
+    transport_name: &str,
+    address: &str,
     bridge: &HubBridge,
     inbox: Arc<PacketInbox>,
 ) -> Result<Box<dyn Transport>, monas_link::Error> {
-    match way {
+    match transport_name {
         #[cfg(all(unix, feature = "local"))]
         "local" => {
-            let local = monas_link::LocalTransport::new(Path::new(place), bridge.node().host(), inbox)?;
+            let local = monas_link::LocalTransport::new(Path::new(address), bridge.node().host(), inbox)?;
             Ok(Box::new(local))
         }
         #[cfg(feature = "zenoh")]
         "listen" | "connect" => {
             let mut settings = monas_link::ZenohSettings::default();
-            let endpoints = if way == "listen" { &mut settings.listen } else { &mut settings.connect };
-            endpoints.push(place.to_owned());
+            let endpoints =
+                if transport_name == "listen" { &mut settings.listen } else { &mut settings.connect };
+            endpoints.push(address.to_owned());
             Ok(Box::new(monas_link::Zenoh::open(&settings, bridge.node(), inbox)?))
         }
-        _ => Err(monas_link::Error::unknown_transport(way)),
+        _ => Err(monas_link::Error::unknown_transport(transport_name)),
     }
 }

@@ -177,16 +177,16 @@ impl LinkState {
     /// Handles received packets if the worker is idle. Returns `false` if the link's thread must be
     /// woken, for that or for packets that result from it.
     fn take_in(&self) -> bool {
-        let Ok(mut place) = self.0.try_lock() else { return false };
-        let Some(worker) = place.as_mut() else { return true };
+        let Ok(mut worker_slot) = self.0.try_lock() else { return false };
+        let Some(worker) = worker_slot.as_mut() else { return true };
         worker.take_in();
         worker.inbox.is_empty() && worker.bridge.poll_at() >= worker.next_poll
     }
 
     /// Updates the status if the worker is idle.
     fn update_report(&self) {
-        if let Ok(mut place) = self.0.try_lock() {
-            place.iter_mut().for_each(|worker| worker.update_report((worker.clock)()));
+        if let Ok(mut worker_slot) = self.0.try_lock() {
+            worker_slot.iter_mut().for_each(|worker| worker.update_report((worker.clock)()));
         }
     }
 

@@ -71,10 +71,10 @@ proptest! {
     ) {
         let mut packets = said();
         let count = packets.len();
-        for (which, place, value) in edits {
+        for (which, index, value) in edits {
             let packet = &mut packets[which % count];
             let mut parts = [packet.stamp.to_vec(), packet.payload.to_vec()];
-            if let Some(byte) = parts[place % 2].get_mut(place / 2) {
+            if let Some(byte) = parts[index % 2].get_mut(index / 2) {
                 *byte = value;
             }
             let [stamp, payload] = parts;

@@ -30,9 +30,9 @@ struct Player {
 }
 
 impl Player {
-    fn new(role: &str, way: &str, place: impl AsRef<OsStr>) -> Player {
+    fn new(role: &str, transport: &str, address: impl AsRef<OsStr>) -> Player {
         let mut command = Command::new(player());
-        command.args([role, way]).arg(place).stdin(Stdio::piped()).stdout(Stdio::piped());
+        command.args([role, transport]).arg(address).stdin(Stdio::piped()).stdout(Stdio::piped());
         let mut process = command.spawn().unwrap();
         let output = BufReader::new(process.stdout.take().unwrap());
         let (sender, lines) = channel();
@@ -85,15 +85,15 @@ fn check(line: &str) {
 }
 
 /// The robot is killed twice, and restarted.
-fn ball_and_commands_pass_and_a_killed_process_reconnects(ways: [&str; 2], place: impl AsRef<OsStr>) {
-    let coach = Player::new("coach", ways[0], &place);
+fn ball_and_commands_pass_and_a_killed_process_reconnects(transports: [&str; 2], address: impl AsRef<OsStr>) {
+    let coach = Player::new("coach", transports[0], &address);
     for _ in 0..2 {
-        let robot = Player::new("robot", ways[1], &place);
+        let robot = Player::new("robot", transports[1], &address);
         coach.line("ball");
         robot.line("command of coach: kick");
         robot.kill();
     }
-    let robot = Player::new("robot", ways[1], &place);
+    let robot = Player::new("robot", transports[1], &address);
     robot.line("command of coach: kick");
     check(&robot.stop());
     let line = coach.stop();

@@ -164,7 +164,7 @@ impl Tape {
 
     fn record(&mut self, publication: &Publication<'_>) {
         let Tape { shared, channels } = self;
-        let known = channels.place(publication);
+        let known = channels.entry(publication);
         if known.is_none() {
             let received_by = (publication.sample.header.host != HostId::LOCAL).then_some(publication.hub);
             let size = SizeHint::default();
@@ -235,7 +235,7 @@ impl fmt::Debug for Tape {
 
 impl ChannelCache {
     /// The cache entry for the channel of a publication.
-    fn place(&mut self, publication: &Publication<'_>) -> &mut Option<(u32, SizeHint)> {
+    fn entry(&mut self, publication: &Publication<'_>) -> &mut Option<(u32, SizeHint)> {
         let is_last = self.hubs.get(self.last).is_some_and(|(name, _)| name == publication.hub);
         if !is_last {
             let known = self.hubs.iter().position(|(name, _)| name == publication.hub);

@@ -109,11 +109,11 @@ struct ChannelCounts {
 impl ChannelCounts {
     fn add(&mut self, message: &RecordedSample<'_>) {
         let address = Arc::as_ptr(&message.channel);
-        let place = match self.indices.get(&address) {
-            Some(&place) => place,
-            None => self.place(address, message),
+        let index = match self.indices.get(&address) {
+            Some(&position) => position,
+            None => self.channel_index(address, message),
         };
-        let counted = &mut self.channels[place];
+        let counted = &mut self.channels[index];
         counted.messages += 1;
         counted.bytes += message.bytes.len() as u64;
         let (first, last) = counted.span;
@@ -121,9 +121,9 @@ impl ChannelCounts {
     }
 
     /// The index of a channel that is new, or equal to a known one with another number.
-    fn place(&mut self, address: *const Channel, message: &RecordedSample<'_>) -> usize {
+    fn channel_index(&mut self, address: *const Channel, message: &RecordedSample<'_>) -> usize {
         let known = self.channels.iter().position(|counted| counted.channel == message.channel);
-        let place = known.unwrap_or_else(|| {
+        let index = known.unwrap_or_else(|| {
             self.channels.push(ChannelOverview {
                 channel: message.channel.clone(),
                 messages: 0,
@@ -136,9 +136,9 @@ impl ChannelCounts {
         // An address identifies a channel only while the channel lives: only those of kept channels
         // are stored.
         if known.is_none() {
-            self.indices.insert(address, place);
+            self.indices.insert(address, index);
         }
-        place
+        index
     }
 
     fn finish(mut self) -> Vec<ChannelOverview> {

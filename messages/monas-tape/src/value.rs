@@ -202,8 +202,8 @@ fn compare<'a>(
             only_second.for_each(|(name, value)| compare(inner(name), None, Some(value), found));
         }
         (Some(Value::List(a)), Some(Value::List(b))) => {
-            let pairs = (0..a.len().max(b.len())).map(|place| (place, a.get(place), b.get(place)));
-            pairs.for_each(|(place, a, b)| compare(format!("{path}[{place}]"), a, b, found));
+            let pairs = (0..a.len().max(b.len())).map(|index| (index, a.get(index), b.get(index)));
+            pairs.for_each(|(position, a, b)| compare(format!("{path}[{position}]"), a, b, found));
         }
         (Some(Value::Float(a)), Some(Value::Float(b))) if a.to_bits() == b.to_bits() => {}
         (Some(Value::Float(_)), Some(Value::Float(_))) => {

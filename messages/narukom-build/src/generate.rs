@@ -136,7 +136,7 @@ impl MessageCode {
             getters = self.each(|index, field| format!("{index} => {},", field.getter())),
             setters = self.each(|index, field| format!("{index} => {},", field.setter())),
             places = self.each(|index, field| field
-                .place()
+                .inner_message()
                 .map(|place| format!("{index} => {place},"))
                 .unwrap_or_default()),
         )
@@ -253,7 +253,7 @@ impl FieldCode {
     }
 
     /// The expression for the message inside the field.
-    fn place(&self) -> Option<String> {
+    fn inner_message(&self) -> Option<String> {
         let FieldShape::Message(_) = self.kind else { return None };
         Some(format!("Some(self.{}.get_or_insert_default().as_message_mut())", self.rust))
     }

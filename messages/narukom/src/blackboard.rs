@@ -235,9 +235,9 @@ impl Blackboard {
         if self.window.delivered < self.window.since {
             return false;
         }
-        let place = &mut self.entries[channel.topic.index()];
-        let reader = place.reader(self.number, channel.host);
-        let Some(reading) = place.inbox_mut(channel.host) else { return false };
+        let entry = &mut self.entries[channel.topic.index()];
+        let reader = entry.reader(self.number, channel.host);
+        let Some(reading) = entry.inbox_mut(channel.host) else { return false };
         let was_open = reading.is_open();
         let exchange = self.hub.state_with_front();
         let Some(entry) = exchange.front_entry(last) else { return false };

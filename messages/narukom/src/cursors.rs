@@ -33,8 +33,8 @@ impl Cursors {
         };
         let states = slots.iter().filter(|slot| is_state(slot));
         states.filter_map(|slot| ring(*slot)?.newest()).for_each(&mut take);
-        let places = slots.iter().map(|slot| (*slot, ring(*slot).map_or(0, Ring::next)));
-        Cursors { host, positions: places.collect(), seen: exchange.last_publication(), lost: 0 }
+        let positions = slots.iter().map(|slot| (*slot, ring(*slot).map_or(0, Ring::next)));
+        Cursors { host, positions: positions.collect(), seen: exchange.last_publication(), lost: 0 }
     }
 
     /// Whether no publication since the last check is on one of its topics.
@@ -74,18 +74,20 @@ impl Cursors {
             Some(moved) => {
                 let host = self.host;
                 for Channel { topic, .. } in moved.filter(|channel| channel.host == host) {
-                    if let Ok(place) = self.positions.binary_search_by_key(&topic, |(slot, _)| *slot) {
-                        self.fetch_topic(exchange, place, &mut take);
+                    if let Ok(index) = self.positions.binary_search_by_key(&topic, |(slot, _)| *slot) {
+                        self.fetch_topic(exchange, index, &mut take);
                     }
                 }
             }
-            None => (0..self.positions.len()).for_each(|place| self.fetch_topic(exchange, place, &mut take)),
+            None => {
+                (0..self.positions.len()).for_each(|position| self.fetch_topic(exchange, position, &mut take))
+            }
         }
         self.seen = exchange.last_publication();
     }
 
-    fn fetch_topic(&mut self, exchange: &HubState, place: usize, take: &mut impl FnMut(&RingEntry)) {
-        let (topic, cursor) = &mut self.positions[place];
+    fn fetch_topic(&mut self, exchange: &HubState, index: usize, take: &mut impl FnMut(&RingEntry)) {
+        let (topic, cursor) = &mut self.positions[index];
         let Some(ring) = exchange.ring(Channel { topic: *topic, host: self.host }) else { return };
         self.lost += ring.missed(*cursor);
         ring.from(*cursor).for_each(take);

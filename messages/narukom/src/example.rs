@@ -38,12 +38,12 @@ impl Reflect for Ball {
     }
 
     fn set_field(&mut self, index: usize, value: FieldValue<'_>) -> Result<(), FieldError> {
-        let (place, field) = match index {
+        let (target, field) = match index {
             0 => (&mut self.distance, "distance"),
             1 => (&mut self.bearing, "bearing"),
             _ => return Err(FieldError::NoSuchField),
         };
-        *place = match value {
+        *target = match value {
             FieldValue::Missing => 0.0,
             FieldValue::Float(value) => value,
             _ => return Err(FieldError::WrongKind { field }),

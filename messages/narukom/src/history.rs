@@ -85,8 +85,8 @@ impl<'a> History<'a> {
     /// The last message published at or before `moment` among the delivered ones before index
     /// `place` and the own ones.
     #[inline]
-    fn last_before(&self, place: usize, moment: Timestamp) -> Option<&'a AnySample> {
-        let delivered = if place > self.first { self.samples.get(place - 1) } else { None };
+    fn last_before(&self, index: usize, moment: Timestamp) -> Option<&'a AnySample> {
+        let delivered = if index > self.first { self.samples.get(index - 1) } else { None };
         if self.own.is_none() {
             return delivered;
         }
@@ -97,8 +97,8 @@ impl<'a> History<'a> {
     /// The first message published at or after `moment` among the delivered ones from index `place`
     /// on and the own ones.
     #[inline]
-    fn first_from(&self, place: usize, moment: Timestamp) -> Option<&'a AnySample> {
-        let delivered = self.samples.get(place.max(self.first));
+    fn first_from(&self, index: usize, moment: Timestamp) -> Option<&'a AnySample> {
+        let delivered = self.samples.get(index.max(self.first));
         if self.own.is_none() {
             return delivered;
         }
@@ -131,7 +131,7 @@ fn before(samples: &VecDeque<AnySample>, moment: Timestamp) -> usize {
 /// exponentially growing steps is used. In the worst case it takes twice the steps of a binary
 /// search.
 fn until(samples: &VecDeque<AnySample>, moment: Timestamp) -> usize {
-    let is_early = |place: usize| samples[place].header.local <= moment;
+    let is_early = |index: usize| samples[index].header.local <= moment;
     let guess = guess(samples, moment);
     // Invariant at the end: samples before `low` are not after `moment`, samples from `high` on
     // are.

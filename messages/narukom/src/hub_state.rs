@@ -215,11 +215,11 @@ impl HubState {
             return Some(&mut rings.local);
         }
         let known = rings.remote_rings.iter().position(|(host, _)| *host == channel.host);
-        let place = known.unwrap_or_else(|| {
+        let index = known.unwrap_or_else(|| {
             rings.remote_rings.push((channel.host, Ring::new(rings.local.capacity())));
             rings.remote_rings.len() - 1
         });
-        Some(&mut rings.remote_rings[place].1)
+        Some(&mut rings.remote_rings[index].1)
     }
 
     /// The newest message of a channel.

@@ -80,8 +80,8 @@ impl Outbox {
     #[inline]
     pub(crate) fn visible_from(&self, first: usize) -> impl DoubleEndedIterator<Item = &AnySample> {
         let inherited = self.inherited.get(first..).unwrap_or_default();
-        let place = self.hidden_count() + first.saturating_sub(self.inherited.len());
-        let own = self.own.range(place.min(self.own.len())..);
+        let index = self.hidden_count() + first.saturating_sub(self.inherited.len());
+        let own = self.own.range(index.min(self.own.len())..);
         inherited.iter().chain(own.map(|own| &own.sample))
     }
 

@@ -24,21 +24,21 @@ impl MessagePool {
     /// Puts `message` behind a reference count.
     pub(crate) fn wrap<M: Message>(&mut self, message: M) -> Arc<dyn AnyMessage> {
         for spare in 0..self.spares.len() {
-            if let Some(place) = exclusive(&mut self.spares[spare]) {
-                *place = message;
+            if let Some(slot) = exclusive(&mut self.spares[spare]) {
+                *slot = message;
                 return self.spares.swap_remove(spare);
             }
         }
         Arc::new(message)
     }
 
-    /// Builds a message in place: `make` receives a default message, whose strings, bytes and lists
+    /// Builds a message in slot: `make` receives a default message, whose strings, bytes and lists
     /// may have capacity.
     pub(crate) fn build<M: Message>(&mut self, make: impl FnOnce(&mut M)) -> Arc<dyn AnyMessage> {
         for spare in 0..self.spares.len() {
-            if let Some(place) = exclusive::<M>(&mut self.spares[spare]) {
-                place.clear();
-                make(place);
+            if let Some(slot) = exclusive::<M>(&mut self.spares[spare]) {
+                slot.clear();
+                make(slot);
                 return self.spares.swap_remove(spare);
             }
         }
@@ -54,8 +54,8 @@ impl MessagePool {
         bytes: &[u8],
     ) -> Result<Arc<dyn AnyMessage>, Error> {
         let mut message = self.vacant().unwrap_or_else(|| topic.default_message());
-        if let Some(place) = Arc::get_mut(&mut message)
-            && let Err(error) = decode(topic, place, bytes)
+        if let Some(slot) = Arc::get_mut(&mut message)
+            && let Err(error) = decode(topic, slot, bytes)
         {
             self.keep(message);
             return Err(error);
@@ -71,16 +71,16 @@ impl MessagePool {
     ) -> Arc<dyn AnyMessage> {
         let Some(source) = source else { return topic.default_message() };
         let mut message = self.vacant().unwrap_or_else(|| topic.default_message());
-        if let Some(place) = Arc::get_mut(&mut message) {
-            place.copy_from(source);
+        if let Some(slot) = Arc::get_mut(&mut message) {
+            slot.copy_from(source);
         }
         message
     }
 
     /// A message without other references, with arbitrary content.
     fn vacant(&mut self) -> Option<Arc<dyn AnyMessage>> {
-        let place = self.spares.iter_mut().position(|spare| Arc::get_mut(spare).is_some())?;
-        Some(self.spares.swap_remove(place))
+        let index = self.spares.iter_mut().position(|spare| Arc::get_mut(spare).is_some())?;
+        Some(self.spares.swap_remove(index))
     }
 
     /// Adds a message that left the hub's ring.

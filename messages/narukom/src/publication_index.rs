@@ -55,9 +55,9 @@ impl PublicationIndex {
     /// The caller must hold the hub's lock.
     #[inline]
     pub(crate) fn record(&self, number: u64, channel: Channel) {
-        let place = (number % STORED_CHANNELS as u64) as usize;
+        let index = (number % STORED_CHANNELS as u64) as usize;
         let packed = packed(number, channel);
-        self.known[place].store(packed, Ordering::Release);
+        self.known[index].store(packed, Ordering::Release);
         self.newest.store(packed, Ordering::Release);
     }
 

@@ -82,12 +82,12 @@ impl Ring {
     #[inline]
     pub(crate) fn next_sequence(&mut self, publisher: PublisherId) -> u64 {
         match self.sequences.binary_search_by_key(&publisher, |(other, _)| *other) {
-            Ok(place) => {
-                self.sequences[place].1 += 1;
-                self.sequences[place].1
+            Ok(index) => {
+                self.sequences[index].1 += 1;
+                self.sequences[index].1
             }
-            Err(place) => {
-                self.sequences.insert(place, (publisher, 1));
+            Err(position) => {
+                self.sequences.insert(position, (publisher, 1));
                 1
             }
         }
@@ -122,8 +122,8 @@ impl Ring {
 
     /// An empty encoding slot without other references.
     fn vacant(&mut self) -> Option<Arc<EncodingSlot>> {
-        let place = self.spares.iter_mut().position(|spare| Arc::get_mut(spare).is_some())?;
-        let mut encoding = self.spares.swap_remove(place);
+        let index = self.spares.iter_mut().position(|spare| Arc::get_mut(spare).is_some())?;
+        let mut encoding = self.spares.swap_remove(index);
         Arc::get_mut(&mut encoding)?.clear();
         Some(encoding)
     }

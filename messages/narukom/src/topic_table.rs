@@ -29,31 +29,31 @@ impl TopicTable {
 
     fn insert(&mut self, slot: TopicSlot) -> Result<(), Error> {
         let topic = self.topics[slot.index()];
-        let mut place = self.place(topic.hash());
-        while let Some((hash, other)) = self.table[place] {
+        let mut index = self.bucket(topic.hash());
+        while let Some((hash, other)) = self.table[index] {
             if hash == topic.hash() {
                 return Err(collision(&self.topics[other.index()], &topic));
             }
-            place = (place + 1) & (self.table.len() - 1);
+            index = (index + 1) & (self.table.len() - 1);
         }
-        self.table[place] = Some((topic.hash(), slot));
+        self.table[index] = Some((topic.hash(), slot));
         Ok(())
     }
 
     #[inline]
-    fn place(&self, hash: u64) -> usize {
+    fn bucket(&self, hash: u64) -> usize {
         hash as usize & (self.table.len() - 1)
     }
 
     /// The slot of the topic with that name hash.
     #[inline]
     pub(crate) fn by_hash(&self, hash: u64) -> Option<TopicSlot> {
-        let mut place = self.place(hash);
-        while let Some((entry, slot)) = self.table[place] {
+        let mut index = self.bucket(hash);
+        while let Some((entry, slot)) = self.table[index] {
             if entry == hash {
                 return Some(slot);
             }
-            place = (place + 1) & (self.table.len() - 1);
+            index = (index + 1) & (self.table.len() - 1);
         }
         None
     }
@@ -70,8 +70,8 @@ impl TopicTable {
     }
 
     pub(crate) fn by_path(&self, path: &str) -> Option<TopicSlot> {
-        let place = self.topics.binary_search_by(|topic| topic.path().cmp(path)).ok()?;
-        Some(TopicSlot::new(place as u32))
+        let index = self.topics.binary_search_by(|topic| topic.path().cmp(path)).ok()?;
+        Some(TopicSlot::new(index as u32))
     }
 
     pub(crate) fn topics(&self) -> &[TopicDeclaration] {

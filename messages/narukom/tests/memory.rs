@@ -33,7 +33,7 @@ fn publish(
             let message = Mark { number, text: "x".repeat(1000) };
             hub.publisher_by_name(path, "body").unwrap().publish(Box::new(message), at(number)).unwrap();
         }
-        let who_fetch = readers.iter_mut().enumerate().filter(|(place, _)| fetches(*place, number));
+        let who_fetch = readers.iter_mut().enumerate().filter(|(index, _)| fetches(*index, number));
         who_fetch.for_each(|(_, reader)| reader.process_messages(at(number)));
     }
 }

@@ -89,7 +89,7 @@ impl TypedModel for Aip {
             outcomes: object.text(2),
             liveness: object.text(3),
             position: object.position,
-            liveness_place: object.place_of(3),
+            liveness_place: object.value_position(3),
         };
         let protocol = |object: &Object| Protocol {
             participants: object.links(0).to_vec(),

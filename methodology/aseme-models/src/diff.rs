@@ -331,14 +331,14 @@ impl ChartComparison<'_> {
 
     /// Compares the orders of transitions and regions that both charts have.
     fn orders(&mut self, same: &BTreeMap<TransitionId, TransitionId>) {
-        let mut ways: BTreeMap<NodeId, Vec<TransitionId>> = BTreeMap::new();
+        let mut by_source: BTreeMap<NodeId, Vec<TransitionId>> = BTreeMap::new();
         for (&id, &old) in same {
             let (earlier, later) = (self.before.transition(old), self.after.transition(id));
             if transition_text(earlier) == transition_text(later) {
-                ways.entry(later.source).or_default().push(id);
+                by_source.entry(later.source).or_default().push(id);
             }
         }
-        for (node, ids) in ways {
+        for (node, ids) in by_source {
             let tried = |chart: &Statechart, of: &dyn Fn(TransitionId) -> TransitionId| {
                 let mut order = ids.clone();
                 order.sort_by_key(|&id| rank(chart, of(id)));

@@ -78,8 +78,8 @@ fn of_chart(mut model: Iac) -> (Statechart, Vec<Diagnostic>) {
         .filter(|&index| exists(model.transitions[index].source) && exists(model.transitions[index].target))
         .collect();
     for (index, text) in unfinished.into_iter().zip(written) {
-        if let Some(place) = drawn.iter().position(|&drawn| drawn == index) {
-            chart.transition_mut(yase::TransitionId(place as u32)).expression = quoted(&text);
+        if let Some(position) = drawn.iter().position(|&drawn| drawn == index) {
+            chart.transition_mut(yase::TransitionId(position as u32)).expression = quoted(&text);
         }
     }
     (chart, found)
@@ -106,8 +106,8 @@ fn of_role(role: &SrmFile, read: &[Diagnostic]) -> (Statechart, Vec<Diagnostic>)
 /// An expression that only shows a text.
 fn quoted(text: &str) -> TransitionExpression {
     let text: Vec<&str> = text.split_whitespace().collect();
-    let place = TextPosition::default();
-    let name = Name { text: text.join(" ").replace('`', "'"), position: place };
-    let trigger = Some(Trigger::OneOf(vec![Path { segments: vec![name], position: place }]));
+    let position = TextPosition::default();
+    let name = Name { text: text.join(" ").replace('`', "'"), position };
+    let trigger = Some(Trigger::OneOf(vec![Path { segments: vec![name], position }]));
     TransitionExpression { trigger, ..TransitionExpression::default() }
 }

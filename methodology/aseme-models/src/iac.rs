@@ -256,17 +256,17 @@ impl Iac {
             order.push(index);
             open.extend(children[index].iter().rev());
         }
-        let mut places = vec![usize::MAX; self.nodes.len()];
-        order.iter().enumerate().for_each(|(new, &old)| places[old] = new);
+        let mut indices = vec![usize::MAX; self.nodes.len()];
+        order.iter().enumerate().for_each(|(new, &old)| indices[old] = new);
         self.nodes = order.iter().map(|&old| std::mem::take(&mut self.nodes[old])).collect();
         for node in &mut self.nodes {
-            node.parent = node.parent.map(|parent| places[parent]);
+            node.parent = node.parent.map(|parent| indices[parent]);
         }
-        self.transitions.retain(|it| places[it.source] != usize::MAX && places[it.target] != usize::MAX);
+        self.transitions.retain(|it| indices[it.source] != usize::MAX && indices[it.target] != usize::MAX);
         for transition in &mut self.transitions {
-            (transition.source, transition.target) = (places[transition.source], places[transition.target]);
+            (transition.source, transition.target) = (indices[transition.source], indices[transition.target]);
         }
-        places
+        indices
     }
 
     /// Gives a node and those in it the labels of their places, and the names that follow from

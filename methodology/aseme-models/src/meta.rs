@@ -230,7 +230,7 @@ impl Object {
     }
 
     /// The position of a feature's value, or of the object if there is none.
-    pub(crate) fn place_of(&self, feature: usize) -> TextPosition {
+    pub(crate) fn value_position(&self, feature: usize) -> TextPosition {
         match self.value_positions.get(feature) {
             Some(position) if position.0 != yase::Span::default() => *position,
             _ => self.position,

@@ -262,9 +262,9 @@ impl RefinementTransfer {
         let nodes = scratch.layout.frames.iter();
         let taken = nodes.clone().find(|(id, frame)| own.frames.get(id).is_some_and(|own| own != *frame));
         let transitions = scratch.layout.bends.iter();
-        let way = transitions.clone().find(|(id, bends)| own.bends.get(id).is_some_and(|own| own != *bends));
+        let bent = transitions.clone().find(|(id, bends)| own.bends.get(id).is_some_and(|own| own != *bends));
         let taken = taken.map(|(&id, _)| path::shortest_path(&self.plain, id));
-        let taken = taken.or(way.map(|(&id, _)| path::shortest_transition(&scratch, id)));
+        let taken = taken.or(bent.map(|(&id, _)| path::shortest_transition(&scratch, id)));
         if let Some(taken) = taken {
             return Err(conflict(&entry.text, &taken));
         }

@@ -203,7 +203,7 @@ fn role(object: &Object) -> Role {
         name: object.text(2),
         capabilities: object.links(3).to_vec(),
         position: object.position,
-        liveness_place: object.place_of(1),
+        liveness_place: object.value_position(1),
     }
 }
 

@@ -18,7 +18,7 @@ use yase::{CompiledChart, Diagnostic, Source, Statechart, TypeEnvironment};
 use yase_explore::{Environment, WriteEffects};
 
 use crate::checked_model::timers;
-use crate::checked_model::{CheckedModel, placed, subject_of};
+use crate::checked_model::{CheckedModel, in_source, subject_of};
 use crate::logic::{Claim, GuardSolver};
 pub(crate) use assignment::{Assignment, may_be_one_message, same_message};
 
@@ -135,10 +135,10 @@ impl Abstraction {
     }
 
     fn condition<'a>(&'a self, script: ScriptId, more: &[&'a Expression]) -> Option<&'a Expression> {
-        let place = script.0 as usize;
-        match place.checked_sub(self.conditions.len()) {
-            Some(place) => more.get(place).copied(),
-            None => self.conditions[place].as_ref(),
+        let index = script.0 as usize;
+        match index.checked_sub(self.conditions.len()) {
+            Some(position) => more.get(position).copied(),
+            None => self.conditions[index].as_ref(),
         }
     }
 
@@ -170,7 +170,7 @@ pub fn explorable(source: &Arc<Source>) -> Result<Arc<CompiledChart>, Vec<Diagno
 /// Builds the abstraction of a model.
 pub(crate) fn abstracted(source: &Arc<Source>) -> Result<Abstraction, Vec<Diagnostic>> {
     let subject = subject_of(source)?;
-    Abstraction::new(&subject).map_err(|found| placed(source, found))
+    Abstraction::new(&subject).map_err(|found| in_source(source, found))
 }
 
 /// Builds an [`Abstraction`].

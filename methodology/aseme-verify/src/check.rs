@@ -150,7 +150,7 @@ pub const CHECKS: &[Check] = {
         ),
         of("M23", Structure, Error, "weights that are not shares, or contradict priorities"),
         of("M24", Exploration, Error, "a chart that does other than its formulas say"),
-        of("M25", Structure, Information, "what other engines read in another way"),
+        of("M25", Structure, Information, "what other engines read differently"),
         of("M26", Exploration, Information, "how large the chart is"),
         of("M27", Exploration, Warning, "a loop in which nothing waits"),
         of("M28", Exploration, Warning, "an event that may wait any number of times"),

@@ -51,15 +51,15 @@ pub(crate) fn of_role(role: &Srm) -> (CheckedModel, Vec<Diagnostic>) {
         let owner = node.parent.and_then(|parent| nodes.get(parent.0 as usize)).copied();
         nodes.push(owner.unwrap_or_default());
     }
-    let place = |id: TransitionId, transition: &Transition| match chosen.get(&id) {
+    let span_of = |id: TransitionId, transition: &Transition| match chosen.get(&id) {
         Some(&entry) => role.transitions[entry].span,
         None => begin(&chart, &nodes, transition),
     };
-    let transitions = chart.transitions().map(|(id, transition)| place(id, transition)).collect();
+    let transitions = chart.transitions().map(|(id, transition)| span_of(id, transition)).collect();
     let guards =
         chart.transitions().map(|(_, transition)| Some(transition.expression.guard.as_ref()?.span()));
-    let places = SourceSpans { guards: guards.collect(), transitions, nodes };
-    let subject = CheckedModel::new(chart, places, Semantics::yase());
+    let spans = SourceSpans { guards: guards.collect(), transitions, nodes };
+    let subject = CheckedModel::new(chart, spans, Semantics::yase());
     (CheckedModel { liveness: Some(role.liveness.clone()), ..subject }, found)
 }
 
@@ -81,12 +81,12 @@ pub(crate) fn of_chart(iac: &Iac) -> (CheckedModel, Vec<Diagnostic>) {
         let guard = transition.expression.guard.as_ref()?.span();
         literal(it.te_place, &it.te).then_some(guard)
     });
-    let places = SourceSpans {
+    let spans = SourceSpans {
         nodes: iac.nodes.iter().map(|node| node.position.0).collect(),
         guards: guards.collect(),
         transitions: transitions().map(|transition| transition.position.0).collect(),
     };
-    (CheckedModel::new(chart, places, Semantics::yase()), found)
+    (CheckedModel::new(chart, spans, Semantics::yase()), found)
 }
 
 /// The chart of an SCXML document, which has no spans.
@@ -98,37 +98,41 @@ pub(crate) fn of_scxml(document: &yase_scxml::Document) -> CheckedModel {
 ///
 /// # Errors
 /// The errors that prevent reading the model.
-pub(crate) fn chart_and_places(source: &Arc<Source>) -> Result<(Statechart, Vec<Span>), Vec<Diagnostic>> {
-    let CheckedModel { chart, spans: places, .. } = subject_of(source)?;
-    Ok((chart, places.transitions))
+pub(crate) fn chart_and_transition_spans(
+    source: &Arc<Source>,
+) -> Result<(Statechart, Vec<Span>), Vec<Diagnostic>> {
+    let CheckedModel { chart, spans, .. } = subject_of(source)?;
+    Ok((chart, spans.transitions))
 }
 
 /// The chart of a model, prepared for checks.
 pub(crate) fn subject_of(source: &Arc<Source>) -> Result<CheckedModel, Vec<Diagnostic>> {
     let (found, mut read) = convert::read(source);
     let (subject, made) = match found {
-        Some((Model::Role(_), _)) if aseme::have_formula_errors(&read) => return Err(placed(source, read)),
+        Some((Model::Role(_), _)) if aseme::have_formula_errors(&read) => {
+            return Err(in_source(source, read));
+        }
         Some((Model::Role(file), _)) => of_role(file.srm()),
         Some((Model::Chart(chart), _)) => of_chart(&chart),
         Some((model, _)) => {
             let message = format!("a model of the kind {} has no statechart", model.kind());
-            return Err(placed(source, vec![Diagnostic::error("E0230", Span::default(), message)]));
+            return Err(in_source(source, vec![Diagnostic::error("E0230", Span::default(), message)]));
         }
         None => return Err(read),
     };
     read.extend(made);
     if read.iter().any(Diagnostic::is_error) {
-        return Err(placed(source, read));
+        return Err(in_source(source, read));
     }
     Ok(subject)
 }
 
-pub(crate) fn placed(source: &Arc<Source>, found: Vec<Diagnostic>) -> Vec<Diagnostic> {
+pub(crate) fn in_source(source: &Arc<Source>, found: Vec<Diagnostic>) -> Vec<Diagnostic> {
     found.into_iter().map(|diagnostic| diagnostic.in_source(source)).collect()
 }
 
 impl CheckedModel {
-    fn new(chart: Statechart, places: SourceSpans, semantics: Semantics) -> CheckedModel {
+    fn new(chart: Statechart, spans: SourceSpans, semantics: Semantics) -> CheckedModel {
         let count = chart.nodes().len();
         let (mut outgoing, mut incoming) = (vec![Vec::new(); count], vec![Vec::new(); count]);
         let exists = |node: NodeId| (node.0 as usize) < count;
@@ -148,7 +152,7 @@ impl CheckedModel {
         }
         let extents = extents(&chart);
         let names = Arc::new(DiagnosticNames::new(&chart));
-        CheckedModel { chart, spans: places, semantics, liveness: None, outgoing, incoming, extents, names }
+        CheckedModel { chart, spans, semantics, liveness: None, outgoing, incoming, extents, names }
     }
 
     pub(crate) fn kind(&self, node: NodeId) -> NodeKind {
@@ -189,12 +193,12 @@ impl CheckedModel {
 
     /// The AND that separates two nodes into different regions, with these regions.
     pub(crate) fn apart(&self, one: NodeId, other: NodeId) -> Option<(NodeId, NodeId, NodeId)> {
-        let way = |node: NodeId| -> Vec<NodeId> {
-            let mut way: Vec<NodeId> = std::iter::once(node).chain(self.chart.ancestors(node)).collect();
-            way.reverse();
-            way
+        let path_to = |node: NodeId| -> Vec<NodeId> {
+            let mut nodes: Vec<NodeId> = std::iter::once(node).chain(self.chart.ancestors(node)).collect();
+            nodes.reverse();
+            nodes
         };
-        let (one, other) = (way(one), way(other));
+        let (one, other) = (path_to(one), path_to(other));
         let fork = one.iter().zip(&other).position(|(one, other)| one != other)?;
         let around = *one.get(fork.checked_sub(1)?)?;
         (self.kind(around) == NodeKind::And).then_some((around, one[fork], other[fork]))

@@ -171,7 +171,7 @@ fn prepare(
 ) -> Result<(crate::checked_model::CheckedModel, Abstraction), Vec<Diagnostic>> {
     let subject = crate::checked_model::subject_of(source)?;
     let abstraction =
-        Abstraction::new(&subject).map_err(|found| crate::checked_model::placed(source, found))?;
+        Abstraction::new(&subject).map_err(|found| crate::checked_model::in_source(source, found))?;
     Ok((subject, abstraction.with_events(&settings.events)))
 }
 
@@ -245,7 +245,7 @@ fn deadlock_finding(product: &GlobalProduct<'_>, found: &Deadlock, settings: &Ch
     let (state, why) = unconfirmed.unwrap_or_default();
     let Finding { diagnostic, trace } = confirmed_deadlock(product, found, state);
     let message =
-        format!("not decided, since the way there is not confirmed: {} ({why})", diagnostic.message);
+        format!("not decided, since the path to it is not confirmed: {} ({why})", diagnostic.message);
     let hint =
         "the trace shows what the exploration has found; with `--linked` the program says who publishes what";
     Finding { diagnostic: Diagnostic { code: "E0937", message, ..diagnostic }.with_hint(hint), trace }
@@ -281,9 +281,9 @@ fn confirmed_deadlock(product: &GlobalProduct<'_>, found: &Deadlock, state: usiz
 /// The trace to an edge and including it.
 fn trace_to_edge(product: &GlobalProduct<'_>, edge: usize) -> Option<String> {
     let edge = product.edges.get(edge)?;
-    let mut way = product.path_to(edge.from);
-    way.push(edge.by);
-    Some(product.trace_text(&way))
+    let mut events = product.path_to(edge.from);
+    events.push(edge.by);
+    Some(product.trace_text(&events))
 }
 
 fn dropped(product: &GlobalProduct<'_>, passage: usize, edge: usize) -> Finding {

@@ -314,15 +314,15 @@ impl ConformanceComparison<'_> {
 }
 
 fn reached(graph: &Graph, states: &BTreeSet<usize>, letter: Symbol) -> BTreeSet<usize> {
-    let ways = states.iter().flat_map(|&state| &graph.edges[state]);
-    ways.filter(|edge| edge.observable == Observable::Letter(letter)).map(|way| way.to).collect()
+    let edges = states.iter().flat_map(|&state| &graph.edges[state]);
+    edges.filter(|edge| edge.observable == Observable::Letter(letter)).map(|edge| edge.to).collect()
 }
 
 /// All states that are reached without the return of an activity.
 fn internal_closure(graph: &Graph, mut states: BTreeSet<usize>) -> BTreeSet<usize> {
     let mut open: Vec<usize> = states.iter().copied().collect();
     while let Some(state) = open.pop() {
-        for edge in graph.edges[state].iter().filter(|way| way.observable == Observable::Nothing) {
+        for edge in graph.edges[state].iter().filter(|edge| edge.observable == Observable::Nothing) {
             if states.insert(edge.to) {
                 open.push(edge.to);
             }
@@ -456,8 +456,8 @@ mod tests {
             done.into_iter().for_each(|transition| {
                 set_guard(&mut chart, transition, &format!("script(\"{}\")", transition.0))
             });
-            if let Some(&way) = guarded.get(round % (guarded.len() + 1)) {
-                set_guard(&mut chart, way, "false");
+            if let Some(&transition) = guarded.get(round % (guarded.len() + 1)) {
+                set_guard(&mut chart, transition, "false");
             }
             let vocabulary = TypeEnvironment { scripts: true, ..TypeEnvironment::default() };
             let compiled = Arc::new(chart.compile(&vocabulary).unwrap());
@@ -517,30 +517,30 @@ mod tests {
         };
         assert_eq!(kinds("r = a . b", closed), [DifferenceKind::NeverEnds]);
         let skipped = |chart: &mut Statechart| {
-            let (way, end) = (between(chart, "a", NodeKind::Basic), between(chart, "b", NodeKind::End));
-            chart.transition_mut(way).target = chart.transition(end).target;
+            let (first, end) = (between(chart, "a", NodeKind::Basic), between(chart, "b", NodeKind::End));
+            chart.transition_mut(first).target = chart.transition(end).target;
         };
         assert_eq!(
             kinds("r = a . b", skipped),
             [DifferenceKind::EndsEarly, DifferenceKind::NeverDone("b".into())]
         );
         let other = |chart: &mut Statechart| {
-            let way = between(chart, "a", NodeKind::Basic);
+            let first = between(chart, "a", NodeKind::Basic);
             let target = named(chart, "c");
-            chart.transition_mut(way).target = target;
+            chart.transition_mut(first).target = target;
         };
         assert!(matches!(
             kinds("r = a . b . c", other)[..],
             [DifferenceKind::NotAllowed(_), DifferenceKind::NeverDone(_)]
         ));
         let once = |chart: &mut Statechart| {
-            let way = between(chart, "a", NodeKind::Basic);
-            set_guard(chart, way, "false");
+            let first = between(chart, "a", NodeKind::Basic);
+            set_guard(chart, first, "false");
         };
         assert_eq!(kinds("r = a+ . b", once), [DifferenceKind::NeverDone("a".into())]);
         let until = |chart: &mut Statechart| {
-            let way = between(chart, "a", NodeKind::Basic);
-            set_guard(chart, way, "In(b)");
+            let first = between(chart, "a", NodeKind::Basic);
+            set_guard(chart, first, "In(b)");
         };
         let ceases = kinds("r = a~ || b", until);
         let [DifferenceKind::Starves(names)] = &ceases[..] else { panic!("{ceases:?}") };

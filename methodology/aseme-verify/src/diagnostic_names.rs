@@ -157,7 +157,7 @@ mod tests {
             let path = file.unwrap().path();
             let text = std::fs::read_to_string(&path).unwrap();
             let source = yase::Source::new(path.to_string_lossy(), text);
-            if let Ok((chart, _)) = crate::checked_model::chart_and_places(&source) {
+            if let Ok((chart, _)) = crate::checked_model::chart_and_transition_spans(&source) {
                 names(&chart);
                 charts += 1;
             }

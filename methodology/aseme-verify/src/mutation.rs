@@ -132,7 +132,7 @@ pub struct Mutant {
 /// # Errors
 /// The errors that prevent reading the model, or an error if its kind has no chart.
 pub fn mutants(source: &Arc<Source>) -> Result<Vec<Mutant>, Vec<Diagnostic>> {
-    let (chart, spans) = crate::checked_model::chart_and_places(source)?;
+    let (chart, spans) = crate::checked_model::chart_and_transition_spans(source)?;
     let mut making = MutantCollector {
         source,
         chart: &chart,
@@ -212,7 +212,7 @@ impl MutantCollector<'_> {
     fn add(
         &mut self,
         what: &str,
-        (place, path): (String, String),
+        (element, path): (String, String),
         span: Span,
         mutation: MutantDescription,
         chart: Statechart,
@@ -221,15 +221,16 @@ impl MutantCollector<'_> {
             return;
         }
         let MutantDescription { kind, change, wanted } = mutation;
-        let description = format!("{place}: {change}");
-        self.made.push((place, Mutant { kind, name: String::new(), path, description, wanted, span, chart }));
+        let description = format!("{element}: {change}");
+        self.made
+            .push((element, Mutant { kind, name: String::new(), path, description, wanted, span, chart }));
     }
 
     /// Assigns names to the mutants.
     fn named(self) -> Vec<Mutant> {
         let mut numbers: BTreeMap<String, usize> = BTreeMap::new();
-        let name = |(place, mutant): (String, Mutant)| {
-            let name = format!("{place} #{}", mutant.kind.word());
+        let name = |(element, mutant): (String, Mutant)| {
+            let name = format!("{element} #{}", mutant.kind.word());
             let number = numbers.entry(name.clone()).or_default();
             *number += 1;
             let name = if *number == 1 { name } else { format!("{name}-{number}") };

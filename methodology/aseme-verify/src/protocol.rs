@@ -102,17 +102,17 @@ pub fn player_conforms(player: &Iac, eac: &Iac, aip: &Aip) -> Conformance {
         let name = eac.nodes[part].name.as_str();
         let span = (0..player.nodes.len())
             .filter(|&node| player.nodes[node].kind == "OR" && player.nodes[node].name == name);
-        for place in span {
+        for index in span {
             takes_part = true;
             let before = found.findings.len();
-            part::contained(player, place, eac, part, &mut found);
+            part::contained(player, index, eac, part, &mut found);
             let formulas =
                 part_named(aip, protocol, name).map(|it| participant_formula(&it.name, &it.liveness));
             if let (true, Some(formulas)) = (found.findings.len() == before, formulas) {
-                let alone = part::alone(player, place, eac, part);
+                let alone = part::alone(player, index, eac, part);
                 let liveness = liveness::parse(&formulas).0;
-                traces(&alone, &liveness, name, player.nodes[place].position.0, &mut found);
-                trace_inclusion::in_whole(player, place, (eac, part), &liveness, &mut found);
+                traces(&alone, &liveness, name, player.nodes[index].position.0, &mut found);
+                trace_inclusion::in_whole(player, index, (eac, part), &liveness, &mut found);
             }
         }
     }
@@ -238,9 +238,9 @@ impl BoundaryTransitions<'_> {
     fn has_exit(&self, chart: &Iac, name: &str, outcome: &Expression, found: &mut Conformance) {
         let logic = GuardSolver::new(&chart.constants);
         let leads_out = |guard: Expression| logic.implies(outcome, &guard);
-        if !self.out.iter().filter_map(|way| guard(way)).any(leads_out) {
+        if !self.out.iter().filter_map(|transition| guard(transition)).any(leads_out) {
             let message = format!("`{name}` has no exit for the outcome `{outcome}`");
-            let span = self.out.first().map_or(self.span, |way| way.position.0);
+            let span = self.out.first().map_or(self.span, |transition| transition.position.0);
             found.report("E0864", span, message, "add a transition out of it with the outcome as guard");
         }
     }
@@ -291,7 +291,7 @@ fn traces(chart: &Iac, liveness: &Liveness, name: &str, span: Span, found: &mut 
             [] => String::from("at the beginning"),
             names => format!("after `{}`", names.join(" ")),
         };
-        let place = match difference.kind {
+        let span = match difference.kind {
             DifferenceKind::NotAllowed(node) => subject.spans.node(node),
             _ => span,
         };
@@ -313,6 +313,6 @@ fn traces(chart: &Iac, liveness: &Liveness, name: &str, span: Span, found: &mut 
             }
         };
         let message = format!("in `{name}`, {before} {what}");
-        found.report(code, place, message, "a guard or transition differs from the protocol");
+        found.report(code, span, message, "a guard or transition differs from the protocol");
     }
 }

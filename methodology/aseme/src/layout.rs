@@ -17,7 +17,7 @@ pub const CORNERS_FORM: &str = "corners are positions separated by commas, such 
 const MAX_COORDINATE: f64 = 100_000.0;
 
 /// `40 120`.
-pub fn place(text: &str) -> Option<Point> {
+pub fn parse_position(text: &str) -> Option<Point> {
     let mut numbers = text.split_whitespace().map(|word| word.parse::<f64>().ok());
     let (right, down) = (numbers.next()??, numbers.next()??);
     let is_on_page = |number: f64| (0.0..=MAX_COORDINATE).contains(&number);
@@ -26,12 +26,12 @@ pub fn place(text: &str) -> Option<Point> {
 
 /// A size: `160 60`, both positive.
 pub fn size(text: &str) -> Option<Point> {
-    place(text).filter(|(width, height)| *width > 0.0 && *height > 0.0)
+    parse_position(text).filter(|(width, height)| *width > 0.0 && *height > 0.0)
 }
 
 /// `40 80, 120 80`.
 pub fn bends(text: &str) -> Option<Vec<Point>> {
-    text.split(',').map(place).collect()
+    text.split(',').map(parse_position).collect()
 }
 
 /// The layout settings of a state, each with its key.
@@ -55,9 +55,9 @@ mod tests {
 
     #[test]
     fn places_are_two_numbers_on_a_page() {
-        assert_eq!(place(" 40  120.5 "), Some((40.0, 120.5)));
+        assert_eq!(parse_position(" 40  120.5 "), Some((40.0, 120.5)));
         for wrong in ["", "40", "40 1 2", "-1 0", "inf 0", "NaN 0", "100001 0", "40,120", "a b"] {
-            assert_eq!(place(wrong), None, "{wrong}");
+            assert_eq!(parse_position(wrong), None, "{wrong}");
         }
         assert_eq!(size("0 60"), None);
         assert_eq!(bends("1 2, 3 4"), Some(vec![(1.0, 2.0), (3.0, 4.0)]));

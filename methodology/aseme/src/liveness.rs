@@ -202,17 +202,17 @@ fn split(text: &str, section: Span, diagnostics: &mut Vec<Diagnostic>) -> Vec<Fo
 fn begin(text: &str, line: Span, equals: usize, diagnostics: &mut Vec<Diagnostic>) -> FormulaLines {
     let name = text::trimmed(text, Span::new(line.start, equals));
     if !text::is_name(&text[name.start..name.end]) {
-        let place = if name.start == name.end { Span::new(equals, equals + 1) } else { name };
+        let span = if name.start == name.end { Span::new(equals, equals + 1) } else { name };
         let message = format!("`{}` is not a name to the left of `=`", &text[name.start..name.end]);
         let hint = "a name has ASCII letters, digits and underscores";
-        diagnostics.push(Diagnostic::error("E0202", place, message).with_hint(hint));
+        diagnostics.push(Diagnostic::error("E0202", span, message).with_hint(hint));
     }
     let mut body = Span::new(equals + 1, line.end);
     if let Some(second) = text[body.start..body.end].find('=') {
-        let place = Span::new(body.start + second, body.end);
+        let span = Span::new(body.start + second, body.end);
         let hint = "each formula starts on its own line";
-        diagnostics.push(Diagnostic::error("E0203", place, "a second `=` in one formula").with_hint(hint));
-        body.end = place.start;
+        diagnostics.push(Diagnostic::error("E0203", span, "a second `=` in one formula").with_hint(hint));
+        body.end = span.start;
     }
     FormulaLines { name, body }
 }

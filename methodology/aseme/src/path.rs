@@ -57,10 +57,10 @@ impl Path {
             Ok(_) => format!("a path has at most {MAX_SEGMENTS} names"),
             Err(reason) => reason,
         };
-        let place = trimmed(text, Span::new(0, text.len()));
+        let span = trimmed(text, Span::new(0, text.len()));
         let hint =
             "a path is names of states from the formula separated by `/`, such as `takeAction/TrackBall`";
-        Err(Diagnostic::error("E0241", place, reason).with_hint(hint))
+        Err(Diagnostic::error("E0241", span, reason).with_hint(hint))
     }
 
     /// The path relative to the state that `scope` names.
@@ -117,8 +117,8 @@ impl Path {
 
     /// The last `length` names on the path to a node; `thorough` includes ANDs and regions.
     fn to(chart: &Statechart, node: NodeId, length: usize, thorough: bool) -> Path {
-        let way = std::iter::once(node).chain(chart.ancestors(node));
-        let named = way.filter(|&id| id == node || thorough || !may_be_left_out(chart, id));
+        let ancestors = std::iter::once(node).chain(chart.ancestors(node));
+        let named = ancestors.filter(|&id| id == node || thorough || !may_be_left_out(chart, id));
         let mut segments: Vec<PatternSegment> =
             named.take(length).map(|id| PatternSegment::of(chart, id)).collect();
         segments.reverse();
@@ -157,7 +157,7 @@ impl PatternSegment {
     /// The segment that matches a node and none of its siblings.
     fn of(chart: &Statechart, node: NodeId) -> PatternSegment {
         let pattern = match (chart.node(node).name.as_str(), chart.node(node).kind) {
-            ("", NodeKind::Or) => SegmentPattern::Name(place(chart, node).to_string()),
+            ("", NodeKind::Or) => SegmentPattern::Name(sibling_number(chart, node).to_string()),
             ("", kind) => SegmentPattern::Connector(kind),
             (name, _) => SegmentPattern::Name(name.into()),
         };
@@ -224,7 +224,7 @@ impl SegmentPattern {
         let node = chart.node(id);
         match self {
             SegmentPattern::Name(name) if is_region(chart, id) => {
-                name.parse().is_ok_and(|number: usize| number == place(chart, id))
+                name.parse().is_ok_and(|number: usize| number == sibling_number(chart, id))
             }
             SegmentPattern::Name(name) => node.name == *name,
             SegmentPattern::Connector(kind) => node.kind == *kind,
@@ -270,7 +270,7 @@ fn goes_on_forever(chart: &Statechart, node: NodeId) -> bool {
 }
 
 /// The number of a node among its siblings, from 1.
-fn place(chart: &Statechart, node: NodeId) -> usize {
+fn sibling_number(chart: &Statechart, node: NodeId) -> usize {
     siblings(chart, node).binary_search(&node).map_or(1, |index| index + 1)
 }
 

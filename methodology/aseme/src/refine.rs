@@ -19,7 +19,7 @@ use yase::{Diagnostic, NodeId, NodeKind, Span, Statechart, Transition, Transitio
 use crate::path::{self, Path, PathIndex};
 use crate::srm::{StateEntry, TransitionEntry};
 
-pub use layout::{place_among_twins, refine_layout};
+pub use layout::{index_among_twins, refine_layout};
 
 /// An entry that matches no element, or too many.
 #[derive(Clone, PartialEq, Debug)]

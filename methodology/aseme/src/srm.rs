@@ -167,9 +167,9 @@ impl StateEntry {
         node.activity = self.activity.clone().or(node.activity.take()).filter(|name| !name.is_empty());
         node.priority = self.priority.unwrap_or(node.priority);
         node.duration = self.duration.or(node.duration);
-        for (said, place) in [(&self.entry, &mut node.entry), (&self.exit, &mut node.exit)] {
+        for (said, target) in [(&self.entry, &mut node.entry), (&self.exit, &mut node.exit)] {
             if let Some(actions) = said {
-                place.clone_from(actions);
+                target.clone_from(actions);
             }
         }
         if let Some(defer) = &self.defer {
@@ -297,9 +297,9 @@ impl Reader {
             self.section(*section, blanked, *body);
         }
         if !sections.iter().any(|(section, _)| *section == Section::Liveness) {
-            let place = Span::new(0, blanked.find('\n').unwrap_or(blanked.len()));
+            let span = Span::new(0, blanked.find('\n').unwrap_or(blanked.len()));
             let hint = "add `Liveness:` and below it `role = activity`";
-            self.report(Diagnostic::error("E0233", place, "the role has no formulas").with_hint(hint));
+            self.report(Diagnostic::error("E0233", span, "the role has no formulas").with_hint(hint));
         }
     }
 
@@ -319,9 +319,9 @@ impl Reader {
         let span = text::trimmed(blanked, body);
         let words: Vec<&str> = blanked[span.start..span.end].split_whitespace().collect();
         if words.is_empty() {
-            let place = Span::new(body.start.saturating_sub(1), body.start);
+            let span = Span::new(body.start.saturating_sub(1), body.start);
             return self.report(
-                Diagnostic::error("E0234", place, "the role has no name").with_hint("write it after `Role:`"),
+                Diagnostic::error("E0234", span, "the role has no name").with_hint("write it after `Role:`"),
             );
         }
         self.srm.role = words.join(" ");

@@ -44,7 +44,7 @@ fn title(chart: &Statechart, id: NodeId) -> String {
     let node = chart.node(id);
     let kind = kind_word(node.kind);
     match (node.name.as_str(), node.kind) {
-        ("", NodeKind::Or) => format!("region {}", place(chart, id)),
+        ("", NodeKind::Or) => format!("region {}", sibling_number(chart, id)),
         ("", _) => kind.to_string(),
         (name, _) => format!("{name} {kind}"),
     }
@@ -56,7 +56,7 @@ fn target(chart: &Statechart, id: NodeId) -> String {
     if node.name.is_empty() { kind_word(node.kind).into() } else { node.name.clone() }
 }
 
-fn place(chart: &Statechart, id: NodeId) -> usize {
+fn sibling_number(chart: &Statechart, id: NodeId) -> usize {
     let siblings = chart.node(id).parent.map_or(&[][..], |parent| chart.children(parent));
     siblings.iter().position(|&sibling| sibling == id).map_or(1, |index| index + 1)
 }

@@ -25,7 +25,7 @@ pub fn parse(text: &str) -> Result<Document<'_>, Diagnostic> {
         }
         error => {
             let message = format!("this is not well-formed XML: {error}");
-            Diagnostic::error("E0246", place(text, error.pos()), message)
+            Diagnostic::error("E0246", span_at(text, error.pos()), message)
         }
     })
 }
@@ -39,7 +39,7 @@ pub fn tag(node: Node<'_, '_>) -> Span {
 }
 
 /// The character at a line and column, both from 1; the end of the text if there is none.
-fn place(text: &str, position: roxmltree::TextPos) -> Span {
+fn span_at(text: &str, position: roxmltree::TextPos) -> Span {
     let (row, column) = (position.row.saturating_sub(1) as usize, position.col.saturating_sub(1) as usize);
     let lines = text.split_inclusive('\n');
     let start: usize = lines.take(row).map(str::len).sum();

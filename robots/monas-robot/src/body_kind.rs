@@ -39,7 +39,7 @@ pub struct BodyKind {
 /// Opens a body at a site.
 pub type OpenBody = fn(BodySite) -> Result<Box<dyn Robot>, Error>;
 
-/// A capability that a body lacks, or has in another way than software may expect.
+/// A capability that a body lacks, or has in a form that software may not expect.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub struct BodyLimit {
     /// The limited capability.

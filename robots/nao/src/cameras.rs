@@ -127,7 +127,7 @@ impl Cameras {
     ///
     /// # Errors
     /// The system cannot create a thread.
-    pub(crate) fn start(places: &CameraPlaces) -> Result<Cameras, Error> {
+    pub(crate) fn start(settings: &CameraPlaces) -> Result<Cameras, Error> {
         let thread = |name, path: &Path, is_turned| {
             let path = path.to_owned();
             CameraThread::start(name, move || {
@@ -137,9 +137,9 @@ impl Cameras {
                 streamed.map_err(|error| std::io::Error::other(error.to_string()))
             })
         };
-        let top = thread(TOP_OPTION, &places.top, places.is_top_turned)?;
-        let threads = [top, thread(BOTTOM_OPTION, &places.bottom, false)?];
-        Ok(Cameras { threads, pair: FramePair::default(), objects: places.objects })
+        let top = thread(TOP_OPTION, &settings.top, settings.is_top_turned)?;
+        let threads = [top, thread(BOTTOM_OPTION, &settings.bottom, false)?];
+        Ok(Cameras { threads, pair: FramePair::default(), objects: settings.objects })
     }
 
     /// The newest images, with the pose that the cameras have in the posture of the joints. Never
@@ -319,9 +319,9 @@ mod tests {
     fn missing_cameras_are_named_with_their_options() {
         let options = [(TOP_OPTION, "/dev/null"), (BOTTOM_OPTION, "/nowhere/camera"), (TURNED_OPTION, "0")];
         let options = options.map(|(name, value)| (name.to_owned(), value.to_owned())).into();
-        let places = CameraPlaces::of(&options);
-        assert!(!places.is_top_turned && CameraPlaces::default().is_top_turned);
-        let [top, bottom] = &places.missing()[..] else { panic!("{:?}", places.missing()) };
+        let settings = CameraPlaces::of(&options);
+        assert!(!settings.is_top_turned && CameraPlaces::default().is_top_turned);
+        let [top, bottom] = &settings.missing()[..] else { panic!("{:?}", settings.missing()) };
         let sees_nothing = "the robot sees nothing with its";
         assert_eq!(
             *top,
@@ -339,9 +339,9 @@ mod tests {
 
     #[test]
     fn missing_cameras_deliver_nothing_and_do_not_stop_the_body() {
-        let places =
+        let settings =
             CameraPlaces { top: "/dev/null".into(), bottom: "/nowhere".into(), ..CameraPlaces::default() };
-        let mut cameras = Cameras::start(&places).unwrap();
+        let mut cameras = Cameras::start(&settings).unwrap();
         assert_eq!(cameras.take(Timestamp::from_nanos(5), &stand()), None);
     }
 }

@@ -262,10 +262,10 @@ mod tests {
         {
             let mut engine = SteppingWalk::default();
             walk(&mut engine, WalkVelocity { x, y, turn }, 2.0);
-            let way = walk(&mut engine, WalkVelocity { x, y, turn }, 3.024);
-            let error = (way[0] - 3.024 * x).abs().max((way[1] - 3.024 * y).abs());
-            assert!(turn != 0.0 || error < 0.01, "{x} {y}: {way:?}");
-            assert!((way[2] - 3.024 * turn).abs() < 0.01, "{turn}: {way:?}");
+            let moved = walk(&mut engine, WalkVelocity { x, y, turn }, 3.024);
+            let error = (moved[0] - 3.024 * x).abs().max((moved[1] - 3.024 * y).abs());
+            assert!(turn != 0.0 || error < 0.01, "{x} {y}: {moved:?}");
+            assert!((moved[2] - 3.024 * turn).abs() < 0.01, "{turn}: {moved:?}");
         }
     }
 
@@ -276,8 +276,8 @@ mod tests {
         assert!(engine.is_moving());
         walk(&mut engine, WalkVelocity::STILL, 6.0);
         assert!(!engine.is_moving(), "{engine:?}");
-        let way = walk(&mut engine, WalkVelocity::STILL, 1.0);
-        assert!(way.iter().all(|part| part.abs() < 1e-12), "{way:?}");
+        let moved = walk(&mut engine, WalkVelocity::STILL, 1.0);
+        assert!(moved.iter().all(|part| part.abs() < 1e-12), "{moved:?}");
     }
 
     proptest! {

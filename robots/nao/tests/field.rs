@@ -64,7 +64,7 @@ impl Trial {
 
     /// Runs for a time with a command; returns the odometry: x, y and heading.
     fn run(&mut self, seconds: f64, command: Actuators) -> Pose {
-        let mut way = Pose::default();
+        let mut moved = Pose::default();
         for _ in 0..(seconds / 0.012).round() as usize {
             self.cycle += 1;
             let now = Timestamp::from_nanos(self.cycle * 12_000_000);
@@ -75,9 +75,9 @@ impl Trial {
             self.nao.sense(now, &mut self.percepts).unwrap();
             self.nao.act(now, &command).unwrap();
             let felt = &self.percepts.sensors;
-            way = way.compose(&Pose::new(felt.odometry_x, felt.odometry_y, felt.odometry_turn));
+            moved = moved.compose(&Pose::new(felt.odometry_x, felt.odometry_y, felt.odometry_turn));
         }
-        way
+        moved
     }
 
     fn pose(&self) -> Pose {
@@ -92,13 +92,13 @@ impl Trial {
     fn perform(&mut self, skill: Skill, ends: impl Fn(BodyPhase) -> bool) -> (f64, Pose) {
         let skill_number = self.percepts.sensors.skill_done + 1;
         let command = Actuators { skill: skill as i32, skill_number, ..Actuators::default() };
-        let (mut way, mut cycles) = (Pose::default(), 0);
+        let (mut moved, mut cycles) = (Pose::default(), 0);
         while !ends(self.phase()) {
-            way = way.compose(&self.run(0.012, command));
+            moved = moved.compose(&self.run(0.012, command));
             cycles += 1;
             assert!(cycles < 1000, "{skill:?} does not end: {:?}", self.phase());
         }
-        (f64::from(cycles) * 0.012, way)
+        (f64::from(cycles) * 0.012, moved)
     }
 
     fn posture(&self) -> Posture {
@@ -126,10 +126,10 @@ fn legs_carry_the_robot_of_the_field() {
         let felt = trial.run(4.0, command);
         assert_eq!(trial.posture(), Posture::Walking);
         let after = trial.pose();
-        let way = before.to_own(after.position);
+        let seen = before.to_own(after.position);
         let turned = monas_sim::normalize_angle(after.heading - before.heading);
         // The steps of the field slip by 8 percent.
-        assert!((way - felt.position).norm() < 0.25, "{way} {}", felt.position);
+        assert!((seen - felt.position).norm() < 0.25, "{seen} {}", felt.position);
         assert!((turned - felt.heading).abs() < 0.4, "{turned} {}", felt.heading);
         // Four seconds less the time to reach the speed.
         let least = if turn == 0.0 { 3.7 * x.max(y) } else { 0.3 };
@@ -203,7 +203,7 @@ fn a_fallen_or_lifted_robot_has_no_weight_on_its_soles() {
 fn skills_take_little_longer_than_those_of_the_field_and_are_no_steps() {
     for (skill, begins) in [(Skill::DiveRight, 0.1), (Skill::FallLeft, 0.16)] {
         let mut trial = Trial::new();
-        let (time, way) = trial.perform(skill, |phase| !phase.is_upright());
+        let (time, moved) = trial.perform(skill, |phase| !phase.is_upright());
         // The legs have to lean first.
         assert!(time < begins, "{skill:?} begins after {time} s");
         let fallen =
@@ -214,7 +214,7 @@ fn skills_take_little_longer_than_those_of_the_field_and_are_no_steps() {
         assert!((3.5..3.75).contains(&time), "it stands after {time} s");
         let settled = trial.run(1.0, Actuators::default());
         assert_eq!(trial.posture(), Posture::Standing);
-        for felt in [way, fallen, risen, settled] {
+        for felt in [moved, fallen, risen, settled] {
             assert!(felt.position.norm() < 1e-3 && felt.heading.abs() < 1e-3, "{skill:?}: {felt:?}");
         }
         assert!((trial.pose().position - before.position).norm() < 0.01, "the legs carry it away");
@@ -327,8 +327,8 @@ fn a_robot_of_its_own_keeps_its_limits() {
     let command = Actuators { walk_x: 0.3, head_pitch: 0.5, ..Actuators::default() };
     let walk = |options| {
         let mut trial = Trial::with(field(), options);
-        let way = trial.run(3.0, command);
-        (way.position.x, trial.percepts.sensors.head_pitch)
+        let moved = trial.run(3.0, command);
+        (moved.position.x, trial.percepts.sensors.head_pitch)
     };
     let (ahead, pitch) = walk(&slow);
     assert!((0.2..0.32).contains(&ahead) && (pitch - 0.2).abs() < 0.01, "{ahead} {pitch}");

@@ -105,36 +105,38 @@ impl Table {
         let side = if skill == Skill::KickLeft { 1.0 } else { -1.0 };
         // Far from where it stood before, so that the body notices that it was placed.
         let height = (robot.straight_height() * 100.0).ceil() / 100.0;
-        let place = [ROBOT_POSITION[0], ROBOT_POSITION[1] + side, height];
-        let ball =
-            [place[0] + robot.hips().x + kick.ball_x + beside[0], place[1] + side * kick.ball_y + beside[1]];
+        let position = [ROBOT_POSITION[0], ROBOT_POSITION[1] + side, height];
+        let ball = [
+            position[0] + robot.hips().x + kick.ball_x + beside[0],
+            position[1] + side * kick.ball_y + beside[1],
+        ];
         let mut command = Actuators { skill_number: self.skill, ..Actuators::default() };
         for _ in 0..STAND_CYCLES {
             self.cycle(&command)?;
         }
         let team = "Monas".to_owned();
-        self.body.instruct(Command::PlaceRobot { team, number: 2, at: place, heading: 0.0 });
+        self.body.instruct(Command::PlaceRobot { team, number: 2, at: position, heading: 0.0 });
         self.body.instruct(Command::PlaceBall { at: [ball[0], ball[1], 0.11], velocity: [0.0; 3] });
         for _ in 0..STAND_CYCLES {
             self.cycle(&command)?;
         }
         self.skill += 1;
         (command.skill, command.skill_number) = (skill as i32, self.skill);
-        let (mut places, mut fell, mut rolling) = (vec![(0.0, ball)], false, 0);
+        let (mut positions, mut fell, mut rolling) = (vec![(0.0, ball)], false, 0);
         while rolling < ROLLING_CYCLES {
             self.cycle(&command)?;
             fell |= self.body.is_fallen();
             rolling += u32::from(fell || self.percepts.sensors.skill_done == self.skill);
-            places.extend(self.ball().map(|ball| (self.cycle as f64 * 0.02, ball)));
+            positions.extend(self.ball().map(|ball| (self.cycle as f64 * 0.02, ball)));
         }
-        let way = |from: [f64; 2], to: [f64; 2]| libm::hypot(to[0] - from[0], to[1] - from[1]);
-        let speed = |(at, (time, place)): (usize, &(f64, [f64; 2]))| {
-            let later = places[at..].iter().find(|(later, _)| *later >= time + SPEED_INTERVAL)?;
-            Some(way(*place, later.1) / (later.0 - time))
+        let distance = |from: [f64; 2], to: [f64; 2]| libm::hypot(to[0] - from[0], to[1] - from[1]);
+        let speed = |(at, (time, position)): (usize, &(f64, [f64; 2]))| {
+            let later = positions[at..].iter().find(|(later, _)| *later >= time + SPEED_INTERVAL)?;
+            Some(distance(*position, later.1) / (later.0 - time))
         };
-        let speed = places.iter().enumerate().skip(1).filter_map(speed).fold(0.0, f64::max);
-        let last = places.last().map_or(ball, |last| last.1);
+        let speed = positions.iter().enumerate().skip(1).filter_map(speed).fold(0.0, f64::max);
+        let last = positions.last().map_or(ball, |last| last.1);
         let direction = libm::atan2(last[1] - ball[1], last[0] - ball[0]);
-        Ok(Kicked { distance: way(ball, last), direction, speed, fell })
+        Ok(Kicked { distance: distance(ball, last), direction, speed, fell })
     }
 }

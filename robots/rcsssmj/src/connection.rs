@@ -31,8 +31,8 @@ impl Connection {
         let failed =
             |error: std::io::Error| Error::disconnected(format!("{address} does not answer: {error}"));
         let mut last = None;
-        for place in address.to_socket_addrs().map_err(failed)? {
-            match TcpStream::connect_timeout(&place, CONNECT_TIMEOUT) {
+        for resolved in address.to_socket_addrs().map_err(failed)? {
+            match TcpStream::connect_timeout(&resolved, CONNECT_TIMEOUT) {
                 Ok(stream) => {
                     stream.set_nodelay(true).map_err(failed)?;
                     stream.set_read_timeout(Some(RECEIVE_TIMEOUT)).map_err(failed)?;

@@ -158,11 +158,11 @@ impl BoosterControl {
                 // Bodies report no marks of the lines.
                 CameraObject::Mark { .. } => continue,
             };
-            let place = self.stance.on_ground(&self.robot.seen_in_torso(at, &self.percept.positions));
+            let position = self.stance.on_ground(&self.robot.seen_in_torso(at, &self.percept.positions));
             image.objects.push(Sighting {
                 kind: kind as i32,
-                bearing: libm::atan2(place.y, place.x),
-                distance: libm::hypot(place.x, place.y),
+                bearing: libm::atan2(position.y, position.x),
+                distance: libm::hypot(position.x, position.y),
                 colour: colour as i32,
             });
         }

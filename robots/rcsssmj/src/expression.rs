@@ -40,11 +40,11 @@ impl<'a> Items<'a> {
     /// The parentheses are not balanced.
     pub fn of(message: &'a [u8]) -> Result<Items<'a>, Error> {
         let mut depth = 0usize;
-        for (place, byte) in message.iter().enumerate() {
+        for (index, byte) in message.iter().enumerate() {
             depth = match byte {
                 b'(' => depth + 1,
                 b')' => depth.checked_sub(1).ok_or_else(|| {
-                    Error::protocol(format!("a parenthesis is closed at byte {place} that none opened"))
+                    Error::protocol(format!("a parenthesis is closed at byte {index} that none opened"))
                 })?,
                 _ => depth,
             };

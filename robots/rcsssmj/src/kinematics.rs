@@ -248,9 +248,9 @@ mod tests {
             for robot in Humanoid::ALL {
                 let size = robot.thigh + robot.shank + robot.sole;
                 for (foot, side) in [(Foot::Left, 1.0), (Foot::Right, -1.0)] {
-                    let place = Vector3::new(ahead, side * robot.beside + left, -down * size);
+                    let position = Vector3::new(ahead, side * robot.beside + left, -down * size);
                     let turned = UnitQuaternion::from_euler_angles(roll, pitch, yaw);
-                    let sole = Isometry3::from_parts((robot.hips + place).into(), turned);
+                    let sole = Isometry3::from_parts((robot.hips + position).into(), turned);
                     let mut angles = STRAIGHT;
                     let first = robot.leg(foot);
                     angles[first..first + 6].copy_from_slice(&robot.leg_angles(foot, &sole));

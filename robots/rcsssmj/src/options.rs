@@ -152,9 +152,11 @@ pub(crate) fn faults(settings: &BodySettings) -> Vec<BodyFault> {
         Ok(options) => options,
         Err(fault) => return vec![fault],
     };
-    let places = [("address", &settings.address), ("monitor", &options.monitor)];
-    let mut faults: Vec<BodyFault> =
-        places.into_iter().filter_map(|(name, place)| check_address(name, place.as_deref()?).err()).collect();
+    let addresses = [("address", &settings.address), ("monitor", &options.monitor)];
+    let mut faults: Vec<BodyFault> = addresses
+        .into_iter()
+        .filter_map(|(name, address)| check_address(name, address.as_deref()?).err())
+        .collect();
     let idle = match settings.address {
         Some(_) => ("server", &options.server, "a server at an `address` is not started here"),
         None => ("monitor", &options.monitor, "a server without an `address` is started here"),

@@ -415,10 +415,10 @@ mod tests {
 
         #[test]
         fn a_message_cut_off_or_changed_is_read_or_refused(
-            length in 0..TEXT.len(), place in 0..TEXT.len(), byte in any::<u8>(),
+            length in 0..TEXT.len(), index in 0..TEXT.len(), byte in any::<u8>(),
         ) {
             let mut bytes = TEXT.as_bytes().to_vec();
-            bytes[place] = byte;
+            bytes[index] = byte;
             let _ = Percept::default().decode(&bytes, &T1);
             bytes.truncate(length);
             let _ = Percept::default().decode(&bytes, &T1);

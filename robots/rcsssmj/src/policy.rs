@@ -103,8 +103,8 @@ impl PolicyWalk {
             ));
         }
         let mut numbers = bytes.as_chunks::<4>().0.iter().map(|bytes| f32::from_le_bytes(*bytes));
-        if let Some(place) = numbers.clone().position(|number| !number.is_finite()) {
-            return Err(format!("weight {place} is not a finite number"));
+        if let Some(index) = numbers.clone().position(|number| !number.is_finite()) {
+            return Err(format!("weight {index} is not a finite number"));
         }
         let mut take = |count| numbers.by_ref().take(count).collect::<Vec<f32>>();
         let mut layer = |inputs, outputs| Layer { weights: take(inputs * outputs), biases: take(outputs) };
@@ -120,17 +120,17 @@ impl PolicyWalk {
     fn observe(&mut self, velocity: WalkVelocity, motion: &Motion) {
         for joint in 0..JOINTS {
             let flip = JOINT_SIGNS[joint];
-            let place = &mut self.input[3 * joint..3 * joint + 3];
-            place[0] = (motion.positions[joint] as f32 * flip - NOMINAL_ANGLES[joint]) / 4.6;
-            place[1] = motion.velocities[joint] as f32 * flip / 110.0;
-            place[2] = self.action[joint] / 10.0;
+            let input = &mut self.input[3 * joint..3 * joint + 3];
+            input[0] = (motion.positions[joint] as f32 * flip - NOMINAL_ANGLES[joint]) / 4.6;
+            input[1] = motion.velocities[joint] as f32 * flip / 110.0;
+            input[2] = self.action[joint] / 10.0;
         }
         let gyro = motion.gyro.map(|rate| (rate as f32 / 50.0).clamp(-1.0, 1.0));
         let command = [velocity.x as f32, velocity.y as f32, velocity.turn as f32];
         let down = [motion.down.x as f32, motion.down.y as f32, motion.down.z as f32];
         let rest = &mut self.input[3 * JOINTS..];
-        for (place, value) in rest.iter_mut().zip(gyro.into_iter().chain(command).chain(down)) {
-            *place = value;
+        for (input, value) in rest.iter_mut().zip(gyro.into_iter().chain(command).chain(down)) {
+            *input = value;
         }
         self.input.iter_mut().for_each(|value| *value = value.clamp(-MAX_VALUE, MAX_VALUE));
     }
@@ -223,7 +223,7 @@ mod tests {
     /// Weights that are all zero, except for some.
     fn weights(set: &[(usize, f32)]) -> Vec<u8> {
         let mut numbers = vec![0.0f32; WEIGHT_COUNT];
-        set.iter().for_each(|(place, value)| numbers[*place] = *value);
+        set.iter().for_each(|(index, value)| numbers[*index] = *value);
         numbers.iter().flat_map(|number| number.to_le_bytes()).collect()
     }
 

@@ -101,14 +101,14 @@ impl SineWalk {
             let lift = (libm::sin(clock) - walk.support) / (1.0 - walk.support);
             let lift = walk.lift * lift.max(0.0) * self.stepping;
             let swing = swing(clock + walk.phase, walk.linear);
-            let place = Vector3::new(
+            let position = Vector3::new(
                 walk.foot + ahead * swing,
                 side * (robot.beside + walk.spread) + left * swing + sway,
                 lift - walk.height,
             );
             let turned = UnitQuaternion::new(Vector3::new(0.0, 0.0, yaw * swing))
                 * UnitQuaternion::new(Vector3::new(0.0, -walk.lean, 0.0));
-            let sole = Isometry3::from_parts((robot.hips + place).into(), turned);
+            let sole = Isometry3::from_parts((robot.hips + position).into(), turned);
             angles[leg..leg + 6].copy_from_slice(&robot.leg_angles(foot, &sole));
             angles[leg] += walk.hip_pitch * pitch + walk.hip_pitch_rate * pitch_rate;
             angles[leg + 1] += walk.hip_roll * roll + walk.hip_roll_rate * roll_rate;

@@ -40,7 +40,7 @@ fn start(robot: &Humanoid) -> Option<Booster> {
 
 /// Runs for a time with a command; returns the odometry: x, y and heading.
 fn run(robot: &mut Booster, cycle: &mut u64, seconds: f64, command: &Actuators) -> [f64; 3] {
-    let (mut percepts, mut way) = (Percepts::default(), [0.0; 3]);
+    let (mut percepts, mut moved) = (Percepts::default(), [0.0; 3]);
     for _ in 0..(seconds * 50.0) as usize {
         *cycle += 1;
         let now = Timestamp::from_nanos(*cycle * 20_000_000);
@@ -48,13 +48,13 @@ fn run(robot: &mut Booster, cycle: &mut u64, seconds: f64, command: &Actuators) 
         robot.sense(now, &mut percepts).unwrap();
         robot.act(now, command).unwrap();
         let felt = &percepts.sensors;
-        let (sin, cos) = libm::sincos(way[2]);
-        way[0] += cos * felt.odometry_x - sin * felt.odometry_y;
-        way[1] += sin * felt.odometry_x + cos * felt.odometry_y;
-        way[2] += felt.odometry_turn;
+        let (sin, cos) = libm::sincos(moved[2]);
+        moved[0] += cos * felt.odometry_x - sin * felt.odometry_y;
+        moved[1] += sin * felt.odometry_x + cos * felt.odometry_y;
+        moved[2] += felt.odometry_turn;
         assert_ne!(felt.posture(), Posture::Fallen, "it has fallen in cycle {cycle}");
     }
-    way
+    moved
 }
 
 fn walks_as_commanded(robot: &Humanoid) {

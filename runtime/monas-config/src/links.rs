@@ -129,10 +129,10 @@ impl LinkReader<'_> {
 
     fn receive(&mut self, element: &Element) -> Option<ReceiveRule> {
         let values = Values::of(element, self.grammar);
-        let place =
+        let index =
             values.word("as", &[("other", PublishAs::Other), ("own", PublishAs::Own)]).unwrap_or_default();
         let topics = values.given("topics")?;
-        Some(ReceiveRule { topics: self.pattern(element, topics)?, publish_as: place })
+        Some(ReceiveRule { topics: self.pattern(element, topics)?, publish_as: index })
     }
 
     /// A pattern that matches a topic of the program.

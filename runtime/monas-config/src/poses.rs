@@ -136,15 +136,15 @@ fn too_fast(
         for &(joint, angle) in &pose.angles {
             let Some(before) = angles[joint].replace(angle) else { continue };
             let Joint { name, speed: Some(speed), .. } = &anatomy.joints[joint] else { continue };
-            let way = f64::abs(angle - before);
-            if way <= speed * pose.seconds {
+            let change = f64::abs(angle - before);
+            if change <= speed * pose.seconds {
                 continue;
             }
             let message = format!(
-                "`{name}` turns by {way:.2} rad in {} s, its motor by {speed:.2} rad/s at most",
+                "`{name}` turns by {change:.2} rad in {} s, its motor by {speed:.2} rad/s at most",
                 pose.seconds
             );
-            let hint = format!("it lags behind; the way takes it {:.2} s", way / speed);
+            let hint = format!("it lags behind: it needs {:.2} s", change / speed);
             let span =
                 Values::of(element, grammar).given(name).map_or(element.span(), |given| given.value_span);
             let diagnostic = Diagnostic::warning("E0371", span, message).with_hint(hint);

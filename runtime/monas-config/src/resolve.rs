@@ -134,8 +134,8 @@ fn list_element(
         !rule.attributes.is_empty() || !element.attributes.is_empty() || !element.children.is_empty();
     if is_plain || !has_values {
         let value = is_plain.then(|| element.text.clone());
-        let place = Some((element.source.clone(), element.text_span));
-        entries.push(ResolvedEntry { path: path.to_owned(), value, layer: element.layer, location: place });
+        let span = Some((element.source.clone(), element.text_span));
+        entries.push(ResolvedEntry { path: path.to_owned(), value, layer: element.layer, location: span });
     }
     let is_identity =
         |known: &&AttributeRule| matches!(rule.identity, Identity::Attribute(key) if key == known.key);

@@ -33,8 +33,8 @@ pub(crate) fn parse(source: &Arc<Source>, grammar: &Grammar) -> (Vec<Element>, V
     }
     let mut elements = Vec::new();
     for (key, value) in in_order(document.get_ref()) {
-        let place = KeyLocation { name: key.get_ref(), span: key.span().into() };
-        reader.elements(place, value, &mut elements);
+        let location = KeyLocation { name: key.get_ref(), span: key.span().into() };
+        reader.elements(location, value, &mut elements);
     }
     (elements, reader.diagnostics)
 }
@@ -69,15 +69,15 @@ impl TomlReader<'_> {
     }
 
     /// The elements for a key: several if its value is an array.
-    fn elements(&mut self, place: KeyLocation<'_>, value: &Spanned<DeValue<'_>>, into: &mut Vec<Element>) {
+    fn elements(&mut self, location: KeyLocation<'_>, value: &Spanned<DeValue<'_>>, into: &mut Vec<Element>) {
         match value.get_ref() {
-            DeValue::Array(values) => values.iter().for_each(|one| self.elements(place, one, into)),
+            DeValue::Array(values) => values.iter().for_each(|one| self.elements(location, one, into)),
             DeValue::Table(table) => {
-                let element = self.table(place, table, value.span().into());
+                let element = self.table(location, table, value.span().into());
                 into.push(element);
             }
             scalar => {
-                let mut element = self.empty(place, value.span().into());
+                let mut element = self.empty(location, value.span().into());
                 element.text = text_of(scalar);
                 element.text_span = self.unquoted(value.span().into());
                 into.push(element);
@@ -85,26 +85,26 @@ impl TomlReader<'_> {
         }
     }
 
-    fn empty(&self, place: KeyLocation<'_>, span: Span) -> Element {
+    fn empty(&self, location: KeyLocation<'_>, span: Span) -> Element {
         Element {
-            name: place.name.to_owned(),
-            name_span: place.span,
-            span: place.span.to(span),
+            name: location.name.to_owned(),
+            name_span: location.span,
+            span: location.span.to(span),
             attributes: Vec::new(),
             children: Vec::new(),
             text: String::new(),
-            text_span: place.span,
+            text_span: location.span,
             source: self.source.clone(),
             layer: Layer::File,
         }
     }
 
-    fn table(&mut self, place: KeyLocation<'_>, table: &DeTable<'_>, span: Span) -> Element {
-        let rule = self.grammar.element(place.name);
-        let mut element = self.empty(place, span);
+    fn table(&mut self, location: KeyLocation<'_>, table: &DeTable<'_>, span: Span) -> Element {
+        let rule = self.grammar.element(location.name);
+        let mut element = self.empty(location, span);
         for (key, value) in in_order(table) {
-            let place = KeyLocation { name: key.get_ref(), span: key.span().into() };
-            self.entry(place, value, rule, &mut element);
+            let index = KeyLocation { name: key.get_ref(), span: key.span().into() };
+            self.entry(index, value, rule, &mut element);
         }
         element
     }
@@ -112,7 +112,7 @@ impl TomlReader<'_> {
     /// An entry of a table is the element's text, a child, or an attribute.
     fn entry(
         &mut self,
-        place: KeyLocation<'_>,
+        location: KeyLocation<'_>,
         value: &Spanned<DeValue<'_>>,
         rule: Option<&ElementRule>,
         element: &mut Element,
@@ -121,21 +121,21 @@ impl TomlReader<'_> {
         if span.start == span.end {
             return; // there is no value, which has been said
         }
-        let is_child = rule.is_some_and(|rule| rule.child_named(place.name).is_some());
-        let is_text = rule.and_then(|rule| rule.text.as_ref()).is_some_and(|text| text.key == place.name);
+        let is_child = rule.is_some_and(|rule| rule.child_named(location.name).is_some());
+        let is_text = rule.and_then(|rule| rule.text.as_ref()).is_some_and(|text| text.key == location.name);
         match value.get_ref() {
-            _ if is_child => self.elements(place, value, &mut element.children),
-            DeValue::Table(_) => self.elements(place, value, &mut element.children),
+            _ if is_child => self.elements(location, value, &mut element.children),
+            DeValue::Table(_) => self.elements(location, value, &mut element.children),
             DeValue::Array(values) => {
-                let attribute = rule.and_then(|rule| rule.attribute_named(place.name));
+                let attribute = rule.and_then(|rule| rule.attribute_named(location.name));
                 let texts: Option<Vec<String>> = values.iter().map(|one| word_of(one.get_ref())).collect();
                 match (texts, attribute.map(|attribute| &attribute.kind)) {
                     (Some(texts), Some(Kind::List)) => {
-                        element.attributes.push(self.attribute(place, texts.join(" "), span));
+                        element.attributes.push(self.attribute(location, texts.join(" "), span));
                     }
-                    (None, None) => self.elements(place, value, &mut element.children),
+                    (None, None) => self.elements(location, value, &mut element.children),
                     _ => {
-                        let message = format!("`{}` is an array, expected one value", place.name);
+                        let message = format!("`{}` is an array, expected one value", location.name);
                         self.report("E0343", span, message, "keep one of them, without brackets");
                     }
                 }
@@ -145,16 +145,16 @@ impl TomlReader<'_> {
                 element.text_span = self.unquoted(span);
             }
             scalar => {
-                let attribute = self.attribute(place, text_of(scalar), self.unquoted(span));
+                let attribute = self.attribute(location, text_of(scalar), self.unquoted(span));
                 element.attributes.push(attribute);
             }
         }
     }
 
-    fn attribute(&self, place: KeyLocation<'_>, value: String, value_span: Span) -> Attribute {
+    fn attribute(&self, location: KeyLocation<'_>, value: String, value_span: Span) -> Attribute {
         Attribute {
-            name: place.name.to_owned(),
-            name_span: place.span,
+            name: location.name.to_owned(),
+            name_span: location.span,
             value,
             value_span,
             source: self.source.clone(),

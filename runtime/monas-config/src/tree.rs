@@ -110,7 +110,7 @@ fn found<T: FromStr, A: FromStr, K: FromStr + Ord>(
 
 fn node<T: FromStr, A: FromStr, K: FromStr + Ord>(
     element: &Element,
-    place: Vec<usize>,
+    indices: Vec<usize>,
 ) -> Result<XmlNode<T, A, K>, ValueError> {
     let value = match element.text() {
         "" => "".parse().ok(),
@@ -124,5 +124,5 @@ fn node<T: FromStr, A: FromStr, K: FromStr + Ord>(
         Ok((key, attribute_value(given)?))
     });
     let attributes = attributes.collect::<Result<_, ValueError>>()?;
-    Ok(XmlNode { name: element.name().to_owned(), value, attributes, path: place })
+    Ok(XmlNode { name: element.name().to_owned(), value, attributes, path: indices })
 }

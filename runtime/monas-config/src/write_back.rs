@@ -152,8 +152,8 @@ impl AgentWriteBack<'_> {
             element.children_named("activity").filter(|activity| self.is_enabled(activity)).collect();
         let origins = self.origins(&before, profile);
         let stay = longest_rise(&origins);
-        for (place, activity) in before.iter().enumerate() {
-            if !stay.contains(&place) {
+        for (index, activity) in before.iter().enumerate() {
+            if !stay.contains(&index) {
                 splices.push((self.line_of(activity), String::new()));
             }
         }
@@ -162,8 +162,8 @@ impl AgentWriteBack<'_> {
         let mut coming = String::new();
         let indentation = element.children().first().map_or("\n  ", |first| self.blanks_before(first));
         for (now, origin) in profile.activities.iter().zip(origins) {
-            let origin_element = origin.map(|place| before[place]);
-            match origin_element.filter(|_| origin.is_some_and(|place| stay.contains(&place))) {
+            let origin_element = origin.map(|position| before[position]);
+            match origin_element.filter(|_| origin.is_some_and(|position| stay.contains(&position))) {
                 Some(stays) => {
                     if !coming.is_empty() {
                         splices.push((behind..behind, std::mem::take(&mut coming)));
@@ -187,9 +187,9 @@ impl AgentWriteBack<'_> {
     fn origins(&self, before: &[&Element], profile: &AgentProfile) -> Vec<Option<usize>> {
         let mut free: Vec<bool> = before.iter().map(|_| true).collect();
         let mut take = |fits: &dyn Fn(&Element) -> bool| {
-            let place = (0..before.len()).find(|place| free[*place] && fits(before[*place]))?;
-            free[place] = false;
-            Some(place)
+            let index = (0..before.len()).find(|position| free[*position] && fits(before[*position]))?;
+            free[index] = false;
+            Some(index)
         };
         let origin = |now: &ActivityProfile| {
             let same = take(&|element| {
@@ -354,9 +354,9 @@ fn activity_attributes(now: &ActivityProfile) -> Vec<(&str, &str)> {
 fn longest_rise(sequence: &[Option<usize>]) -> Vec<usize> {
     let known: Vec<usize> = sequence.iter().copied().flatten().collect();
     let mut best: Vec<Vec<usize>> = Vec::new();
-    for (place, value) in known.iter().enumerate() {
+    for (index, value) in known.iter().enumerate() {
         let before =
-            (0..place).filter(|earlier| known[*earlier] < *value).max_by_key(|earlier| best[*earlier].len());
+            (0..index).filter(|earlier| known[*earlier] < *value).max_by_key(|earlier| best[*earlier].len());
         let mut rise = before.map(|earlier| best[earlier].clone()).unwrap_or_default();
         rise.push(*value);
         best.push(rise);

@@ -310,13 +310,13 @@ impl Agent {
         let activities = std::mem::take(&mut self.activities);
         let mut generated = std::mem::take(&mut self.generated);
         let all = 0..self.charts.len();
-        let without = |place: Option<usize>| all.clone().filter(|other| Some(*other) != place).collect();
+        let without = |index: Option<usize>| all.clone().filter(|other| Some(*other) != index).collect();
         let list = (begins_list || !activities.is_empty())
             .then(|| (None, Agent { activities, absent: without(None), ..self.without_instances() }));
-        let charts = all.clone().map(|place| {
-            let generated = generated.remove(&place).map(|chart| (place, chart)).into_iter().collect();
-            let absent = without(Some(place));
-            (Some(place), Agent { generated, absent, ..self.without_instances() })
+        let charts = all.clone().map(|position| {
+            let generated = generated.remove(&position).map(|chart| (position, chart)).into_iter().collect();
+            let absent = without(Some(position));
+            (Some(position), Agent { generated, absent, ..self.without_instances() })
         });
         charts.chain(list).collect()
     }

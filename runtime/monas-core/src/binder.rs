@@ -209,7 +209,7 @@ impl<'a> Binder<'a> {
                 Err(_) if said.contains(&name) => {}
                 Err(error) => {
                     said.push(name);
-                    let span = source.map_or(Span::default(), |source| place_of(name, &source.text));
+                    let span = source.map_or(Span::default(), |source| first_occurrence(name, &source.text));
                     diagnostics.push(unbound(&chart.path(id), name, span, &error));
                 }
             }
@@ -222,8 +222,8 @@ fn in_order(
     chart: &CompiledChart,
     mut instances: Vec<(NodeId, Box<dyn Activity>)>,
 ) -> Vec<Box<dyn Activity>> {
-    let place = |node| chart.activities().position(|entry| entry.node == node);
-    instances.sort_by_key(|(node, _)| place(*node));
+    let index = |node| chart.activities().position(|entry| entry.node == node);
+    instances.sort_by_key(|(node, _)| index(*node));
     instances.into_iter().map(|(_, activity)| activity).collect()
 }
 
@@ -241,7 +241,7 @@ fn unbound(path: &str, name: &str, span: Span, error: &Error) -> Diagnostic {
 
 /// The first occurrence of a name as a whole word in a model's text; the start of the text if there
 /// is none. Charts do not keep the spans of their states.
-fn place_of(name: &str, text: &str) -> Span {
+fn first_occurrence(name: &str, text: &str) -> Span {
     let part_of_word = |c: char| c.is_alphanumeric() || c == '_';
     let found = text.match_indices(name).find(|(at, _)| {
         let (before, after) = (&text[..*at], &text[at + name.len()..]);
@@ -256,10 +256,10 @@ fn place_of(name: &str, text: &str) -> Span {
 
 #[cfg(test)]
 mod tests {
-    use super::place_of;
+    use super::first_occurrence;
 
     fn found(name: &str, text: &str) -> (usize, String) {
-        let span = place_of(name, text);
+        let span = first_occurrence(name, text);
         (span.start, text[span.start..span.end].to_owned())
     }
 

@@ -143,22 +143,22 @@ impl Monitors {
         facts: &impl EvalContext,
         now: Timestamp,
     ) {
-        for (place, one) in self.properties.iter_mut().enumerate() {
+        for (index, one) in self.properties.iter_mut().enumerate() {
             let letter = evaluate_step(one, machine, seen, facts);
             let was_open = one.monitor.is_open();
             let verdict = one.monitor.step(letter, now.as_nanos());
             if was_open && matches!(verdict, MonitorVerdict::Violated | MonitorVerdict::Lost) {
-                self.violated.push(place);
+                self.violated.push(index);
             }
         }
     }
 
     /// Whether a deadline has passed.
     pub(crate) fn check_deadlines(&mut self, now: Timestamp) -> bool {
-        for (place, one) in self.properties.iter_mut().enumerate() {
+        for (index, one) in self.properties.iter_mut().enumerate() {
             let is_over = one.monitor.deadline().is_some_and(|deadline| deadline < now.as_nanos());
             if is_over && one.monitor.pass(now.as_nanos()) == MonitorVerdict::Violated {
-                self.violated.push(place);
+                self.violated.push(index);
             }
         }
         !self.violated.is_empty()
@@ -173,8 +173,8 @@ impl Monitors {
     /// Takes the violations found since the last call. Does not allocate if there are none.
     pub(crate) fn take_violations(&mut self, now: Timestamp) -> Vec<PropertyViolation> {
         let mut broken = Vec::new();
-        for place in self.violated.drain(..) {
-            let Some(one) = self.properties.get_mut(place) else { continue };
+        for index in self.violated.drain(..) {
+            let Some(one) = self.properties.get_mut(index) else { continue };
             let is_lost = one.monitor.verdict() == MonitorVerdict::Lost;
             let property = one.monitor.plan().name().to_owned();
             let earlier = one.violated_at.replace(now);

@@ -39,8 +39,8 @@ pub fn topic_in_records(hub: &narukom::Hub, topic: narukom::TopicSlot) -> u64 {
 impl Delivery {
     /// The newest message of each topic that the last delivery transferred to a blackboard.
     pub fn all(blackboard: &narukom::Blackboard, region: u32) -> impl Iterator<Item = Delivery> {
-        blackboard.arrivals().enumerate().filter_map(move |(place, topic)| {
-            let is_last = !blackboard.arrivals().skip(place + 1).any(|later| later == topic);
+        blackboard.arrivals().enumerate().filter_map(move |(index, topic)| {
+            let is_last = !blackboard.arrivals().skip(index + 1).any(|later| later == topic);
             let sample = blackboard.latest_sample(topic).filter(|_| is_last)?;
             Some(Delivery {
                 topic: topic_in_records(blackboard.hub(), topic),

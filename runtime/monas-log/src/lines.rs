@@ -12,9 +12,9 @@ use monas_config::Severity;
 pub(crate) fn text(record: &Record, colour: bool, line: &mut String) {
     let (begin, end) = if colour { (colour_of(record.severity), "\x1b[0m") } else { ("", "") };
     let _ = write!(line, "{} {begin}{:<5}{end}", time(record.time), record.severity.name());
-    let place = place(record);
-    if !place.is_empty() {
-        let _ = write!(line, " [{place}]");
+    let index = origin(record);
+    if !index.is_empty() {
+        let _ = write!(line, " [{index}]");
     }
     line.push(' ');
     record.message.as_str().trim_start().chars().for_each(|letter| shown(letter, line));
@@ -22,15 +22,15 @@ pub(crate) fn text(record: &Record, colour: bool, line: &mut String) {
 }
 
 /// `blue-2 behavior/BehaviorGoalie #733`, as far as known.
-fn place(record: &Record) -> String {
+fn origin(record: &Record) -> String {
     let names = [record.agent.as_str(), record.activity.as_str()];
     let names: Vec<&str> = names.into_iter().filter(|name| !name.is_empty()).collect();
     let cycle = record.cycle.map(|cycle| format!("#{cycle}"));
     let parts = [record.robot.as_str(), &names.join("/"), cycle.as_deref().unwrap_or_default()];
     let parts: Vec<&str> = parts.into_iter().filter(|part| !part.is_empty()).collect();
-    let mut place = String::new();
-    parts.join(" ").chars().for_each(|letter| shown(letter, &mut place));
-    place
+    let mut index = String::new();
+    parts.join(" ").chars().for_each(|letter| shown(letter, &mut index));
+    index
 }
 
 /// Escapes a character, so that a message is one line and cannot control a terminal.

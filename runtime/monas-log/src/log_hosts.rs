@@ -116,8 +116,8 @@ impl LogPublisherState {
             *publisher = hub.publisher(LOG, PUBLISHER).ok();
         }
         let metadata = event.metadata();
-        let place = (metadata.target() != log_bridge::TARGET).then(|| (metadata.file(), metadata.line()));
-        let (file, line) = place.unwrap_or_default();
+        let index = (metadata.target() != log_bridge::TARGET).then(|| (metadata.file(), metadata.line()));
+        let (file, line) = index.unwrap_or_default();
         let make = |log: &mut Log| {
             fill(log, record);
             log.file.push_str(file.unwrap_or_default());

@@ -15,14 +15,14 @@ use object::{Object, ObjectSection, ObjectSegment};
 /// The file cannot be read or written, or has no note with a place for the hash.
 pub fn seal(path: impl AsRef<Path>) -> io::Result<()> {
     let bytes = std::fs::read(&path)?;
-    let place = place(&bytes).ok_or_else(|| io::Error::other("its note has no place for a hash"))?;
-    let hash = hash(&bytes, &place);
-    if bytes[place.clone()] == *hash.as_bytes() {
+    let span = hash_range(&bytes).ok_or_else(|| io::Error::other("its note has no place for a hash"))?;
+    let hash = hash(&bytes, &span);
+    if bytes[span.clone()] == *hash.as_bytes() {
         return Ok(());
     }
     // In place, since cargo keeps the file under two names.
     let mut file = OpenOptions::new().write(true).open(path)?;
-    file.seek(SeekFrom::Start(place.start as u64))?;
+    file.seek(SeekFrom::Start(span.start as u64))?;
     file.write_all(hash.as_bytes())?;
     file.sync_all()
 }
@@ -42,7 +42,7 @@ pub(crate) fn check(bytes: &[u8], note: &BuildFingerprint) -> Result<(), String>
     }
     match note.field(note::CONTENT_FIELD) {
         None | Some(note::UNSEALED_CONTENT) => Ok(()),
-        Some(expected) => match place(bytes).map(|place| hash(bytes, &place)) {
+        Some(expected) => match hash_range(bytes).map(|span| hash(bytes, &span)) {
             Some(found) if found == expected => Ok(()),
             _ => Err("its content is not what was built".into()),
         },
@@ -50,7 +50,7 @@ pub(crate) fn check(bytes: &[u8], note: &BuildFingerprint) -> Result<(), String>
 }
 
 /// The position at which the note of a file states the hash of its content.
-fn place(bytes: &[u8]) -> Option<Range<usize>> {
+fn hash_range(bytes: &[u8]) -> Option<Range<usize>> {
     let file = object::File::parse(bytes).ok()?;
     let (offset, size) = file.section_by_name(note::SECTION)?.file_range()?;
     let offset = usize::try_from(offset).ok()?;
@@ -58,15 +58,15 @@ fn place(bytes: &[u8]) -> Option<Range<usize>> {
     let field = format!("\n{} ", note::CONTENT_FIELD);
     let found = section.windows(field.len()).position(|window| window == field.as_bytes())?;
     let start = offset + found + field.len();
-    let place = start..start + note::UNSEALED_CONTENT.len();
-    bytes.get(place.clone())?.iter().all(u8::is_ascii_hexdigit).then_some(place)
+    let span = start..start + note::UNSEALED_CONTENT.len();
+    bytes.get(span.clone())?.iter().all(u8::is_ascii_hexdigit).then_some(span)
 }
 
 /// The hash of a file whose own place counts as unsealed.
-fn hash(bytes: &[u8], place: &Range<usize>) -> String {
+fn hash(bytes: &[u8], index: &Range<usize>) -> String {
     let mut hasher = blake3::Hasher::new();
-    hasher.update(&bytes[..place.start]);
+    hasher.update(&bytes[..index.start]);
     hasher.update(note::UNSEALED_CONTENT.as_bytes());
-    hasher.update(&bytes[place.end..]);
+    hasher.update(&bytes[index.end..]);
     hasher.finalize().to_hex().to_string()
 }

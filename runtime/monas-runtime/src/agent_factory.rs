@@ -89,7 +89,7 @@ impl AgentFactory {
             let message = format!("agent `{name}` has activities but no frequency");
             return Err(Error::new(ErrorKind::NoFrequency, message).with_hint("say so with `every`"));
         }
-        let place = ChartSite { context: ground, names, agent: &name, elsewhere: &agent.elsewhere, now };
+        let site = ChartSite { context: ground, names, agent: &name, elsewhere: &agent.elsewhere, now };
         let count = charts.len();
         let charts = charts.iter().zip(compiled).zip(own).zip(0..);
         let here = charts.filter(|(_, number)| !agent.absent.contains(&(*number as usize)));
@@ -101,7 +101,7 @@ impl AgentFactory {
             let bound = bound.map_err(Error::invalid)?;
             let monitors =
                 binder.monitors(Some((&agent.property_sets, &name, count)), &own.property_sets, &bound.chart);
-            self.runner(bound, number, monitors.map_err(Error::invalid)?, own, &place)
+            self.runner(bound, number, monitors.map_err(Error::invalid)?, own, &site)
         });
         let charts = collect_all(charts)?;
         if let Some(wrong) = needs_one_chart(&name, count).filter(|_| !agent.property_sets.is_empty()) {
@@ -147,12 +147,12 @@ impl AgentFactory {
     pub(crate) fn rebuild_charts(
         &self,
         profile: &AgentProfile,
-        place: &ChartSite<'_>,
+        index: &ChartSite<'_>,
         registry: &Registry,
     ) -> Result<Vec<ChartRunner>, Error> {
         let binder = Binder::new(registry)?;
         collect_all(
-            (0..profile.charts.len()).map(|number| self.rebuild_chart(&binder, profile, number, place)),
+            (0..profile.charts.len()).map(|number| self.rebuild_chart(&binder, profile, number, index)),
         )
     }
 
@@ -162,7 +162,7 @@ impl AgentFactory {
         binder: &Binder<'_>,
         profile: &AgentProfile,
         number: usize,
-        place: &ChartSite<'_>,
+        index: &ChartSite<'_>,
     ) -> Result<ChartRunner, Error> {
         let chart = &profile.charts[number];
         let bound = match chart.is_generated {
@@ -175,7 +175,7 @@ impl AgentFactory {
         let of_agent = Some((&profile.property_sets[..], profile.name.as_str(), profile.charts.len()));
         let monitors =
             binder.monitors(of_agent, &chart.own.property_sets, &bound.chart).map_err(Error::invalid)?;
-        self.runner(bound, u32::try_from(number).unwrap_or(u32::MAX), monitors, chart.own.clone(), place)
+        self.runner(bound, u32::try_from(number).unwrap_or(u32::MAX), monitors, chart.own.clone(), index)
     }
 
     /// A generated chart by its name.
@@ -198,10 +198,10 @@ impl AgentFactory {
         number: u32,
         monitors: Option<Monitors>,
         own: ChartSettings,
-        place: &ChartSite<'_>,
+        index: &ChartSite<'_>,
     ) -> Result<ChartRunner, Error> {
-        let bound = self.fitting(bound, &own, place)?;
-        let ChartSite { context: ground, agent, now, .. } = *place;
+        let bound = self.fitting(bound, &own, index)?;
+        let ChartSite { context: ground, agent, now, .. } = *index;
         let listeners = &self.listeners;
         let home = ChartContext { hub: &ground.hub, agent, number, seed: self.seed, listeners, now };
         let mut runner = ChartRunner::new(bound, own, home)?;
@@ -217,9 +217,9 @@ impl AgentFactory {
         &self,
         bound: BoundChart,
         own: &ChartSettings,
-        place: &ChartSite<'_>,
+        index: &ChartSite<'_>,
     ) -> Result<BoundChart, Error> {
-        let ChartSite { context: ground, names, elsewhere, .. } = *place;
+        let ChartSite { context: ground, names, elsewhere, .. } = *index;
         let mut bound = bound.configured(own);
         apply_remote_activities(&mut bound, elsewhere);
         apply_remote_activities(&mut bound, &own.elsewhere);

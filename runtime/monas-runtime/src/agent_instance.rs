@@ -171,13 +171,13 @@ impl AgentInstance {
         now: Timestamp,
     ) -> Result<(CycleOutcome, Vec<String>), Vec<String>> {
         let mut said = Vec::new();
-        if let Some((place, swap)) = orders.swap
-            && let Some(chart) = self.charts.get_mut(place)
+        if let Some((index, swap)) = orders.swap
+            && let Some(chart) = self.charts.get_mut(index)
         {
             said = chart.runner.swap(*swap, now)?;
         }
-        for (place, instances) in orders.instances {
-            if let Some(chart) = self.charts.get_mut(place) {
+        for (index, instances) in orders.instances {
+            if let Some(chart) = self.charts.get_mut(index) {
                 chart.runner.replace_instances(instances, now);
             }
         }
@@ -188,18 +188,18 @@ impl AgentInstance {
         if let Some(scheduled) = &mut self.list {
             orders.edits.into_iter().for_each(|edit| scheduled.list.edit(edit));
         }
-        if let Some((place, own)) = orders.chart_settings
-            && let Some(chart) = self.charts.get_mut(place)
+        if let Some((index, own)) = orders.chart_settings
+            && let Some(chart) = self.charts.get_mut(index)
         {
             chart.runner.apply_settings(*own, now);
         }
-        let is_meant = |place: usize| orders.only.is_none_or(|only| only == place);
-        let meant = self.charts.iter_mut().enumerate().filter(|(place, _)| is_meant(*place));
+        let is_meant = |index: usize| orders.only.is_none_or(|only| only == index);
+        let meant = self.charts.iter_mut().enumerate().filter(|(index, _)| is_meant(*index));
         for (_, chart) in meant {
             orders.events.iter().for_each(|event| _ = chart.runner.raise(event));
         }
-        if let Some(place) = orders.only {
-            self.apply_to_chart(place, orders.charts.pop(), &orders.commands, now);
+        if let Some(index) = orders.only {
+            self.apply_to_chart(index, orders.charts.pop(), &orders.commands, now);
             return Ok((CycleOutcome::Running, said));
         }
         if !orders.charts.is_empty() {
@@ -218,13 +218,13 @@ impl AgentInstance {
     /// Applies an update to one chart; the others are not affected.
     fn apply_to_chart(
         &mut self,
-        place: usize,
+        index: usize,
         anew: Option<ChartRunner>,
         directives: &[AgentCommand],
         now: Timestamp,
     ) {
         let defaults = self.defaults();
-        let Some(chart) = self.charts.get_mut(place) else { return };
+        let Some(chart) = self.charts.get_mut(index) else { return };
         if directives.contains(&AgentCommand::Stop) {
             chart.runner.stop(now);
         }
@@ -309,8 +309,8 @@ impl AgentInstance {
     }
 
     /// The state of one of its charts, see [`ChartRunner::inspect`].
-    pub(crate) fn inspect_chart(&self, place: usize, aspect: ChartAspect) -> Option<Vec<String>> {
-        self.charts.get(place).map(|chart| chart.runner.inspect(aspect))
+    pub(crate) fn inspect_chart(&self, index: usize, aspect: ChartAspect) -> Option<Vec<String>> {
+        self.charts.get(index).map(|chart| chart.runner.inspect(aspect))
     }
 
     /// The status of its charts.

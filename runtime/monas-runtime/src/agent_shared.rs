@@ -135,8 +135,8 @@ impl ThreadShared {
     /// Withdraws commands; returns false if the thread has begun to apply them.
     fn withdraw(&self, number: u64) -> bool {
         let mut pending = locked(&self.pending);
-        let place = pending.iter().position(|batch| batch.number == number);
-        place.is_some_and(|place| pending.remove(place).is_some())
+        let index = pending.iter().position(|batch| batch.number == number);
+        index.is_some_and(|index| pending.remove(index).is_some())
     }
 }
 
@@ -345,11 +345,11 @@ impl AgentShared {
     /// [`ChartRunner::inspect`](monas_core::chart_runner::ChartRunner::inspect).
     pub(crate) fn inspect_chart(
         &self,
-        place: usize,
+        index: usize,
         aspect: ChartAspect,
         patience: Duration,
     ) -> Result<Vec<String>, String> {
-        let part = locked(&self.parts).charts.get(place).cloned();
+        let part = locked(&self.parts).charts.get(index).cloned();
         let part = part.ok_or_else(|| format!("`{}` has no such statechart", self.name))?;
         let (_, answered) = part.enqueue(AgentUpdate { inspection: Some(aspect), ..AgentUpdate::default() });
         let answer =
@@ -366,8 +366,8 @@ impl AgentShared {
         let shares = update.shares(list.is_some(), charts.len());
         let given: Vec<_> = shares
             .into_iter()
-            .filter_map(|ThreadUpdate { chart: place, update, is_own }| {
-                let part = place.map_or(list.as_ref(), |place| charts.get(place))?;
+            .filter_map(|ThreadUpdate { chart: index, update, is_own }| {
+                let part = index.map_or(list.as_ref(), |index| charts.get(index))?;
                 let (number, answered) = part.enqueue(update);
                 Some((part, number, answered, is_own))
             })

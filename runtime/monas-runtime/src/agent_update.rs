@@ -153,10 +153,10 @@ impl AgentUpdate {
             change: asked,
             ..
         } = self;
-        let chart_update = |place: Option<usize>| {
-            let is_meant = only.is_none() || place == only;
+        let chart_update = |index: Option<usize>| {
+            let is_meant = only.is_none() || index == only;
             let directives = if is_meant { directives.clone() } else { Vec::new() };
-            let is_chart = place.is_some() && is_meant;
+            let is_chart = index.is_some() && is_meant;
             let events = if is_chart { events.clone() } else { Vec::new() };
             AgentUpdate { change: asked.clone(), only, events, ..AgentUpdate::of(directives) }
         };
@@ -170,21 +170,21 @@ impl AgentUpdate {
             });
         }
         let (mut runners, mut swap, mut own, mut instances) = (runners.into_iter(), swap, own, instances);
-        for place in 0..charts {
-            let swap = swap.take_if(|(chart, _)| *chart == place).map(|(_, swap)| (0, swap));
-            let own = own.take_if(|(chart, _)| *chart == place);
-            let fresh: Vec<_> = instances.extract_if(.., |(chart, _)| *chart == place).collect();
+        for index in 0..charts {
+            let swap = swap.take_if(|(chart, _)| *chart == index).map(|(_, swap)| (0, swap));
+            let own = own.take_if(|(chart, _)| *chart == index);
+            let fresh: Vec<_> = instances.extract_if(.., |(chart, _)| *chart == index).collect();
             let is_own = swap.is_some() || own.is_some() || !fresh.is_empty();
-            let is_meant = only.is_none_or(|only| only == place);
+            let is_meant = only.is_none_or(|only| only == index);
             let charts = if is_meant { runners.next().into_iter().collect() } else { Vec::new() };
             let orders = AgentUpdate {
                 charts,
                 swap,
                 chart_settings: own,
                 instances: fresh,
-                ..chart_update(Some(place))
+                ..chart_update(Some(index))
             };
-            shares.push(ThreadUpdate { chart: Some(place), update: orders, is_own });
+            shares.push(ThreadUpdate { chart: Some(index), update: orders, is_own });
         }
         shares.retain(|ThreadUpdate { update: orders, is_own, .. }| {
             *is_own || !orders.commands.is_empty() || !orders.events.is_empty()

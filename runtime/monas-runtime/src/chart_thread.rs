@@ -330,7 +330,7 @@ impl ChartThread {
         }
         let mut notes = Vec::new();
         let now = self.driver.read_clock();
-        self.driver.recorder.record_update(now, &update, self.runner.place());
+        self.driver.recorder.record_update(now, &update, self.runner.chart_index());
         if let Some((_, swap)) = update.swap {
             let is_dry_run = swap.is_dry_run;
             notes = self.runner.swap(*swap, now)?;

@@ -208,7 +208,7 @@ impl ActivityList {
             return;
         }
         self.stopped = Some(reason.to_owned());
-        (0..self.entries.len()).for_each(|place| self.end(place));
+        (0..self.entries.len()).for_each(|index| self.end(index));
     }
 
     pub(crate) fn stopped(&self) -> Option<&str> {

@@ -197,19 +197,19 @@ impl RealTimeRun {
         self.hubs.push(hub.clone());
         let clock = self.clock;
         let safe_state = Arc::new(AtomicBool::new(false));
-        let (place, line) = (hosts.len(), self.line.clone());
+        let (index, line) = (hosts.len(), self.line.clone());
         let site = HostSite {
             hub: hub.clone(),
-            host: place,
+            host: index,
             clock,
             safe_state: safe_state.clone(),
             supervisor: line,
         };
         hosts.push(RealTimeHost::new(site, factory.clone(), ground, profiles, configuration)?);
-        let agents = hosts[place].connect(members)?;
+        let agents = hosts[index].connect(members)?;
         let links = links.into_iter().map(|link| RunningLink::start(&hub, link, move || clock.now()));
         let links = links.collect::<Result<Vec<_>, Error>>()?;
-        hosts[place].connect_links(links.iter().map(|link| Arc::new(link.waker()) as WakeCallback));
+        hosts[index].connect_links(links.iter().map(|link| Arc::new(link.waker()) as WakeCallback));
         self.links.extend(links);
         Ok(ConnectedHost { agents, body: body.map(|body| (body, hub)), safe_state })
     }

@@ -237,9 +237,9 @@ impl AgentThreads {
             }
             let (rests, line) = (self.safe_state.clone(), self.supervisor.clone());
             let shared = Arc::new(AgentShared::new(&member.name, list.clone(), charts.clone(), rests, line));
-            let place = self.handles.partition_point(|known| known.shared.name < member.name);
+            let index = self.handles.partition_point(|known| known.shared.name < member.name);
             self.handles.insert(
-                place,
+                index,
                 AgentHandle {
                     shared: shared.clone(),
                     threads: Vec::new(),
@@ -315,7 +315,7 @@ impl AgentThreads {
         let of_agent = AgentDefaults { frequency, policy, scheduling: scheduling.clone(), statistics_every };
         for (runner, part) in charts.into_iter().zip(chart_parts) {
             let own_pool = |workers| {
-                let name = format!("{name} {}", runner.place() + 1);
+                let name = format!("{name} {}", runner.chart_index() + 1);
                 Arc::new(ActivityPool::new(&name, workers, self.clock, unit.observed().clone(), &self.hub))
             };
             let own_pool = runner.own().workers.map(|workers| own_pool(workers.get()));
@@ -388,7 +388,7 @@ impl AgentThreads {
     fn record_change_request(&self, member: &PreparedAgent, asked: &ChangeRef) -> Result<(), Error> {
         for runner in &member.charts {
             let mut recorder = member.recorder.of_part(runner.part())?;
-            recorder.record_change_request(self.clock.now(), asked, asked.ready_at, runner.place());
+            recorder.record_change_request(self.clock.now(), asked, asked.ready_at, runner.chart_index());
         }
         member.list.iter().try_for_each(|list| self.record_list_change_request(&member.recorder, list, asked))
     }
@@ -484,14 +484,14 @@ impl AgentControl for AgentThreads {
         self.agent_handle(agent).is_some_and(|worker| worker.shared.has_list())
     }
 
-    fn chart_status(&self, agent: &str, place: usize) -> AgentStatus {
+    fn chart_status(&self, agent: &str, index: usize) -> AgentStatus {
         let shown = self.agent_handle(agent).map(|worker| worker.shared.statuses().1);
-        shown.and_then(|charts| charts.get(place).map(|chart| chart.status)).unwrap_or(AgentStatus::Stopped)
+        shown.and_then(|charts| charts.get(index).map(|chart| chart.status)).unwrap_or(AgentStatus::Stopped)
     }
 
-    fn inspect_chart(&self, agent: &str, place: usize, aspect: ChartAspect) -> Result<Vec<String>, String> {
+    fn inspect_chart(&self, agent: &str, index: usize, aspect: ChartAspect) -> Result<Vec<String>, String> {
         let worker = self.agent_handle(agent).ok_or_else(|| format!("`{agent}` is not there"))?;
-        worker.shared.inspect_chart(place, aspect, REPLY_TIMEOUT)
+        worker.shared.inspect_chart(index, aspect, REPLY_TIMEOUT)
     }
 
     fn cycles(&self, agent: &str) -> u64 {
@@ -535,8 +535,8 @@ impl AgentControl for AgentThreads {
         }
         self.connect(vec![member]).and_then(|connected| self.start(connected)).map_err(|error| {
             // The existing threads end, so that no agent remains with only some of its threads.
-            if let Some(place) = self.handles.iter().position(|worker| worker.shared.name == name) {
-                self.handles.remove(place).end();
+            if let Some(index) = self.handles.iter().position(|worker| worker.shared.name == name) {
+                self.handles.remove(index).end();
                 self.set_waker();
             }
             error.to_string()
@@ -544,10 +544,10 @@ impl AgentControl for AgentThreads {
     }
 
     fn remove(&mut self, agent: &str) -> Result<(), String> {
-        let Some(place) = self.handles.iter().position(|worker| worker.shared.name == agent) else {
+        let Some(index) = self.handles.iter().position(|worker| worker.shared.name == agent) else {
             return Ok(());
         };
-        let worker = self.handles.remove(place);
+        let worker = self.handles.remove(index);
         worker.shared.stop(STOPPED_BY_REQUEST);
         worker.end();
         let began = self.clock.now();
@@ -556,7 +556,7 @@ impl AgentControl for AgentThreads {
         }
         if !worker.is_finished() {
             // It stops permanently when its cycle ends; until then it remains listed.
-            self.handles.insert(place, worker);
+            self.handles.insert(index, worker);
             return Err(format!("`{agent}` is in a cycle that does not end: it stops when that ends"));
         }
         self.set_waker();

@@ -138,9 +138,9 @@ impl Simulation {
     /// # Errors
     /// There is no such host. The refusal of a change is part of the reply.
     pub fn change(&mut self, host: &str, change: Change) -> Result<Changed, Error> {
-        let (place, now) = (self.place(host)?, self.now);
+        let (index, now) = (self.host_index(host)?, self.now);
         let _time = self.enter();
-        Ok(self.hosts[place].change(change, now))
+        Ok(self.hosts[index].change(change, now))
     }
 
     /// Schedules a change that is applied at its time before anything else; the reply is published.
@@ -149,13 +149,13 @@ impl Simulation {
     /// # Errors
     /// There is no such host.
     pub fn change_at(&mut self, moment: Timestamp, host: &str, change: Change) -> Result<(), Error> {
-        let place = self.place(host)?;
-        self.script.insert((moment.max(self.now), self.scripted), (place, change));
+        let index = self.host_index(host)?;
+        self.script.insert((moment.max(self.now), self.scripted), (index, change));
         self.scripted += 1;
         Ok(())
     }
 
-    fn place(&self, host: &str) -> Result<usize, Error> {
+    fn host_index(&self, host: &str) -> Result<usize, Error> {
         self.hosts.iter().position(|known| known.name() == host).ok_or_else(|| {
             let known = self.hosts.iter().map(SimulatedHost::name);
             Error::new(ErrorKind::UnknownHost, format!("no host is named `{host}`")).with_nearest(host, known)

@@ -114,11 +114,11 @@ impl Talws {
 
     fn local(&mut self) -> &mut HostConfig {
         let known = self.config.hosts.iter().position(|host| host.name == Talws::LOCAL);
-        let place = known.unwrap_or_else(|| {
+        let index = known.unwrap_or_else(|| {
             self.config.hosts.push(HostConfig { name: Talws::LOCAL.into(), ..HostConfig::default() });
             self.config.hosts.len() - 1
         });
-        &mut self.config.hosts[place]
+        &mut self.config.hosts[index]
     }
 
     /// Adds a host.

@@ -42,7 +42,7 @@ impl TurnRecorder {
     pub(crate) fn record(&self, record: TurnRecord, runner: &ChartRunner, recorder: &mut CycleRecorder) {
         let TurnRecord { turn, now, due, first_tick } = record;
         let make = |cycle: &mut Cycle| {
-            (cycle.time, cycle.turn, cycle.chart) = (now.as_nanos(), turn.into(), runner.place());
+            (cycle.time, cycle.turn, cycle.chart) = (now.as_nanos(), turn.into(), runner.chart_index());
             (cycle.first_tick, cycle.due) = (first_tick, due_record(due));
             cycle.seen.extend_from_slice(runner.fetches());
             cycle.news.extend_from_slice(&self.notices);

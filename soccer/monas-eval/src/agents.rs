@@ -49,7 +49,7 @@ impl StartUp {
 }
 
 /// Whether a motion is under way that was requested under this number.
-fn is_under_way(blackboard: &Blackboard, number: Option<u64>) -> bool {
+fn is_executing(blackboard: &Blackboard, number: Option<u64>) -> bool {
     let done = blackboard.read(topics::MOTION_STATE).map_or(0, |state| state.done);
     number.is_some_and(|number| done < number)
 }

@@ -12,7 +12,7 @@ use monas_soccer::functionality::geometry::angle_of;
 use monas_soccer::functionality::guard::GoalPositioning;
 use monas_soccer::functionality::head::{Gaze, HeadController};
 use monas_soccer::functionality::motion::{DesiredMotion, Skill};
-use monas_soccer::functionality::support::{DISTANCE_AHEAD, support_place};
+use monas_soccer::functionality::support::{DISTANCE_AHEAD, support_position};
 use monas_soccer::functionality::walk::{Walk, stride_to};
 use monas_soccer::{Ball, GameState, PlayerState, Pose};
 use nalgebra::{Point2, Vector2};
@@ -174,8 +174,8 @@ impl Case {
         let target = kick_target(&field, pose * ball, shot_target(&field, pose * ball, &[]));
         let target = pose.inverse_transform_point(&target);
         match self.decision {
-            Decision::ReturnToGoal => (Some(GazeTarget::Scan), stand_at(guard.place(&field, None))),
-            Decision::KeepGoal => (watch, stand_at(guard.place(&field, Some(pose * ball)))),
+            Decision::ReturnToGoal => (Some(GazeTarget::Scan), stand_at(guard.keeper_pose(&field, None))),
+            Decision::KeepGoal => (watch, stand_at(guard.keeper_pose(&field, Some(pose * ball)))),
             Decision::StepAside => {
                 (watch, Some(DesiredMotion::Walk(guard.step_before(self.ball.crossing_y))))
             }
@@ -197,8 +197,12 @@ impl Case {
             }
             Decision::SupportMate => {
                 let here = Point2::from(pose.translation.vector);
-                let place =
-                    pose.inverse_transform_point(&support_place(&field, pose * ball, here, DISTANCE_AHEAD));
+                let place = pose.inverse_transform_point(&support_position(
+                    &field,
+                    pose * ball,
+                    here,
+                    DISTANCE_AHEAD,
+                ));
                 (watch, inside(stride_to(avoid(place, &[ball]), place.coords.norm())))
             }
             // A kick follows a look at the ball; before a dive the head stays.

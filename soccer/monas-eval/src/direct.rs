@@ -94,7 +94,7 @@ impl SharedMemory {
     /// Requests the walk to the place for a kick-off.
     fn take_place(&mut self) {
         self.gaze = GazeRequest::Scan;
-        let place = self.game.place();
+        let place = self.game.kick_off_pose();
         let robots: Vec<Point2<f64>> = self.robots.robots.iter().map(|robot| robot.position()).collect();
         let pose = self.pose.map(|pose| (pose.field_from_robot(), pose.confidence));
         let walk = self.kick_off.walk(self.now, pose, &place, &robots);
@@ -242,7 +242,7 @@ impl<B: Behaviour> DirectRobot<B> {
             circle_radius,
             ..GameState::default()
         }
-        .with_place();
+        .with_kick_off_pose();
     }
 
     fn set_lights(&mut self) {

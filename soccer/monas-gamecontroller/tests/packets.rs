@@ -142,8 +142,8 @@ proptest! {
         let short = &packet[..length.min(packet.len() - 1)];
         prop_assert_eq!(GameControlData::decode(short).unwrap_err().kind(), ErrorKind::Length);
         let mut changed = packet;
-        if let Some(place) = changed.get_mut(at) {
-            *place = byte;
+        if let Some(position) = changed.get_mut(at) {
+            *position = byte;
         }
         read(&changed);
     }

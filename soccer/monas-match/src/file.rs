@@ -494,7 +494,7 @@ mod tests {
 
     #[test]
     fn a_number_that_is_0_or_1_is_nothing_between() {
-        for (file, place) in [
+        for (file, position) in [
             ("<field walls='0.5'/>", "1:15"),
             ("<simulator><rules><switch_colours>0.5</switch_colours></rules></simulator>", "1:35"),
         ] {
@@ -507,7 +507,7 @@ mod tests {
             read(&path, &Layers::new(), &mut diagnostics);
             let found: Vec<String> = diagnostics.iter().map(ToString::to_string).collect();
             assert!(
-                found.iter().any(|found| found.contains(&format!("part.xml:{place}: error[E0306]"))),
+                found.iter().any(|found| found.contains(&format!("part.xml:{position}: error[E0306]"))),
                 "{found:#?}"
             );
         }

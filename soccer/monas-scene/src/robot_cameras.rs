@@ -28,8 +28,8 @@ impl Cameras for RobotCameras {
 fn png(image: &Image) -> Option<Vec<u8>> {
     let (width, height) = (image.width as usize, image.height as usize);
     let pixels = monas_vision::Image::new(width, height, &image.pixels).ok()?;
-    let places = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
-    let bytes: Vec<u8> = places.flat_map(|(x, y)| monas_vision::rgb_of_yuv(pixels.yuv(x, y))).collect();
+    let positions = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
+    let bytes: Vec<u8> = positions.flat_map(|(x, y)| monas_vision::rgb_of_yuv(pixels.yuv(x, y))).collect();
     encode_png(width, height, &bytes).ok()
 }
 

@@ -156,12 +156,12 @@ fn seen_lines(host: &str, seen: &Value, messages: &SceneMessages<'_>) -> Vec<See
     };
     let sign = if attacks_left(host, messages) { -1.0 } else { 1.0 };
     let (sine, cosine) = (libm::sin(heading), libm::cos(heading));
-    let place = |ahead: f64, left: f64| {
+    let position = |ahead: f64, left: f64| {
         [sign * (x + cosine * ahead - sine * left), sign * (y + sine * ahead + cosine * left)]
     };
     let line = |line: &Value| {
         let [x1, y1, x2, y2] = ["x1", "y1", "x2", "y2"].map(|field| number(line, field));
-        let ([x1, y1], [x2, y2]) = (place(x1?, y1?), place(x2?, y2?));
+        let ([x1, y1], [x2, y2]) = (position(x1?, y1?), position(x2?, y2?));
         Some(SeenLine { host: host.to_owned(), ends: [x1, y1, x2, y2] })
     };
     seen["lines"].as_array().into_iter().flatten().filter_map(line).collect()

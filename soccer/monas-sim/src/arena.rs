@@ -130,7 +130,7 @@ impl Arena {
 
     /// Changes the part of a robot that collides with the ball.
     pub(crate) fn set_base(&mut self, robot: usize, base: BallObstacle) {
-        let ((shape, place), restitution) = match base {
+        let ((shape, position), restitution) = match base {
             BallObstacle::Feet => (self.feet.clone(), self.foot_restitution),
             BallObstacle::Lying { direction, reach } => {
                 (self.lying(direction, reach), self.lying_restitution)
@@ -138,7 +138,7 @@ impl Arena {
         };
         let collider = &mut self.world.colliders[self.robots[robot].base];
         collider.set_shape(shape);
-        collider.set_position_wrt_parent(place);
+        collider.set_position_wrt_parent(position);
         collider.set_restitution(restitution);
     }
 

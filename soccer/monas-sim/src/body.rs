@@ -442,8 +442,8 @@ mod tests {
     fn odometry_follows_the_walk_and_is_taken_once() {
         let mut body = body(Motion::Walk(Velocity::new(0.2, 0.0, 0.0)));
         run(&mut body, 10.0);
-        let way = body.take_odometry().position.x;
-        assert!((1.8..2.1).contains(&way), "{way}");
+        let distance = body.take_odometry().position.x;
+        assert!((1.8..2.1).contains(&distance), "{distance}");
         assert_eq!(body.take_odometry(), Pose::default());
     }
 }

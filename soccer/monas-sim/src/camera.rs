@@ -142,8 +142,8 @@ impl CameraView<'_> {
     }
 
     fn look_for_lines(&self, stream: &mut RandomStream, sightings: &mut Vec<Sighting>) {
-        for (feature, place) in self.scene.field.line_features() {
-            let target = self.target(place, (0.0, 0.0), self.physics().line_range);
+        for (feature, position) in self.scene.field.line_features() {
+            let target = self.target(position, (0.0, 0.0), self.physics().line_range);
             if self.sees(&target, None, stream) {
                 let percept = self.percept_by_elevation(&target, 0.0, stream);
                 sightings.push(Sighting::Line { feature, percept });
@@ -424,13 +424,13 @@ mod tests {
         let mut stage = stage(Vector::new(-1.0, 0.0));
         stage.robots[0].pose = Pose::new(1.5, 1.1, 0.0);
         let sightings = stage.look(&mut RandomStream::new(1, "camera"));
-        let seen = |wanted: LineFeature, place: Vector| {
-            let place = stage.robots[0].pose.to_own(place);
+        let seen = |wanted: LineFeature, position: Vector| {
+            let position = stage.robots[0].pose.to_own(position);
             sightings.iter().any(|seen| match seen {
                 Sighting::Line { feature, percept } => {
                     *feature == wanted
-                        && (percept.bearing - direction_of(place)).abs() < 0.05
-                        && (percept.distance - place.norm()).abs() < 0.3
+                        && (percept.bearing - direction_of(position)).abs() < 0.05
+                        && (percept.distance - position.norm()).abs() < 0.3
                 }
                 _ => false,
             })

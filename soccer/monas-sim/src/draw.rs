@@ -77,7 +77,8 @@ impl SvgDrawing {
 
     /// Draws the length of a metre below the field.
     pub(crate) fn scale(&mut self, field: &FieldGeometry) -> fmt::Result {
-        let (x, y) = self.place(Vector::new(-field.half_length(), -field.half_width() - field.border * 0.6));
+        let (x, y) =
+            self.to_picture(Vector::new(-field.half_length(), -field.half_width() - field.border * 0.6));
         writeln!(
             self.text,
             r##"<path d="M{x:.0} {y:.0}m0 -5v10m0 -5h{UNITS_PER_METRE}m0 -5v10" stroke="#f4f7f5" stroke-width="2" fill="none"/>"##
@@ -87,7 +88,7 @@ impl SvgDrawing {
     }
 
     /// Converts a point of the field to picture coordinates.
-    pub(crate) fn place(&self, point: Vector) -> (f64, f64) {
+    pub(crate) fn to_picture(&self, point: Vector) -> (f64, f64) {
         (
             (point.x + self.far.x) * UNITS_PER_METRE,
             (self.far.y - point.y) * UNITS_PER_METRE + SCOREBOARD_HEIGHT,
@@ -131,23 +132,23 @@ impl SvgDrawing {
             self.rectangle(line, inner)?;
             self.cross(Vector::new(sign * field.mark_distance, 0.0))?;
         }
-        let (x, top) = self.place(Vector::new(0.0, field.half_width()));
-        let (_, bottom) = self.place(Vector::new(0.0, -field.half_width()));
+        let (x, top) = self.to_picture(Vector::new(0.0, field.half_width()));
+        let (_, bottom) = self.to_picture(Vector::new(0.0, -field.half_width()));
         writeln!(self.text, r#"<path d="M{x:.1} {top:.1}V{bottom:.1}"/>"#)?;
-        let (x, y) = self.place(Vector::zeros());
+        let (x, y) = self.to_picture(Vector::zeros());
         let radius = field.centre_circle_radius * UNITS_PER_METRE;
         writeln!(self.text, r#"<circle cx="{x:.1}" cy="{y:.1}" r="{radius:.1}"/>"#)?;
         writeln!(self.text, "</g>")
     }
 
     fn rectangle(&mut self, one: Vector, other: Vector) -> fmt::Result {
-        let (x, y) = self.place(Vector::new(one.x.min(other.x), one.y.max(other.y)));
+        let (x, y) = self.to_picture(Vector::new(one.x.min(other.x), one.y.max(other.y)));
         let size = (one - other).abs() * UNITS_PER_METRE;
         writeln!(self.text, r#"<rect x="{x:.1}" y="{y:.1}" width="{:.1}" height="{:.1}"/>"#, size.x, size.y)
     }
 
     fn cross(&mut self, at: Vector) -> fmt::Result {
-        let (x, y) = self.place(at);
+        let (x, y) = self.to_picture(at);
         writeln!(
             self.text,
             r#"<path d="M{:.1} {y:.1}h12M{x:.1} {:.1}v12" stroke-width="4"/>"#,
@@ -168,7 +169,7 @@ impl SvgDrawing {
         self.rectangle(posts[0], posts[1] + back)?;
         writeln!(self.text, "</g>")?;
         for post in posts {
-            let (x, y) = self.place(post);
+            let (x, y) = self.to_picture(post);
             let radius = field.post_radius * UNITS_PER_METRE + 1.0;
             writeln!(self.text, r#"<circle cx="{x:.1}" cy="{y:.1}" r="{radius:.1}" stroke="none"/>"#)?;
         }
@@ -176,7 +177,7 @@ impl SvgDrawing {
     }
 
     fn robot(&mut self, world: &SimulatedWorld, robot: &RobotState, shirt: &str) -> fmt::Result {
-        let (x, y) = self.place(robot.pose.position);
+        let (x, y) = self.to_picture(robot.pose.position);
         let degrees = -robot.pose.heading.to_degrees();
         let opacity = if robot.on_field { 1.0 } else { 0.45 };
         writeln!(self.text, r#"<g transform="translate({x:.1} {y:.1})" opacity="{opacity}">"#)?;
@@ -255,7 +256,7 @@ impl SvgDrawing {
     }
 
     fn ball(&mut self, world: &SimulatedWorld) -> fmt::Result {
-        let (x, y) = self.place(world.ball().position);
+        let (x, y) = self.to_picture(world.ball().position);
         let radius = world.physics().ball_radius * UNITS_PER_METRE + 1.5;
         writeln!(
             self.text,

@@ -89,17 +89,17 @@ impl FieldAnimation<'_> {
         for track in &tracks {
             self.robot(track)?;
         }
-        let place = self.moving(self.moments.iter().map(|moment| moment.ball));
-        write!(self.drawing.text, r#"<g transform="translate({})">"#, place.first)?;
+        let position = self.moving(self.moments.iter().map(|moment| moment.ball));
+        write!(self.drawing.text, r#"<g transform="translate({})">"#, position.first)?;
         let ball = r##"<circle r="5" fill="#ff7a1a" stroke="#8a3a00" stroke-width="0.8"/><circle cx="-1.4" cy="-1.5" r="1.3" fill="#ffd9b8"/>"##;
-        writeln!(self.drawing.text, "{}{ball}</g>", place.animation)?;
+        writeln!(self.drawing.text, "{}{ball}</g>", position.animation)?;
         self.board(width, teams)?;
         self.legend(field)?;
         self.drawing.end()
     }
 
     fn robot(&mut self, track: &RobotTrack) -> fmt::Result {
-        let place = self.moving(track.robots.iter().map(|robot| robot.pose.position));
+        let position = self.moving(track.robots.iter().map(|robot| robot.pose.position));
         let opacity = self.stepping("opacity", track.presences.iter().map(|presence| (*presence).into()));
         let heading = self.turning(track);
         let fill = self.stepping("fill", self.colours(track.team, shirt));
@@ -110,7 +110,7 @@ impl FieldAnimation<'_> {
         write!(
             text,
             r#"<g transform="translate({})" opacity="{}">{}{}"#,
-            place.first, opacity.first, place.animation, opacity.animation
+            position.first, opacity.first, position.animation, opacity.animation
         )?;
         write!(text, r#"<g transform="rotate({})" fill="{}">"#, heading.first, fill.first)?;
         write!(text, "{}{}", heading.animation, fill.animation)?;
@@ -131,7 +131,7 @@ impl FieldAnimation<'_> {
         if robots.iter().all(|robot| robot.believed_ball.is_none()) {
             return Ok(());
         }
-        let place =
+        let position =
             self.moving(robots.iter().map(|robot| robot.believed_ball.unwrap_or(robot.pose.position)));
         let shown = |robot: &PicturedRobot| if robot.believed_ball.is_some() { "0.6" } else { "0" };
         let opacity = self.stepping("opacity", robots.iter().map(|robot| shown(robot).into()));
@@ -140,9 +140,9 @@ impl FieldAnimation<'_> {
         write!(
             text,
             r#"<circle r="7" fill="none" stroke-width="2" stroke="{}" opacity="{}" transform="translate({})">"#,
-            stroke.first, opacity.first, place.first
+            stroke.first, opacity.first, position.first
         )?;
-        writeln!(text, "{}{}{}</circle>", stroke.animation, opacity.animation, place.animation)
+        writeln!(text, "{}{}{}</circle>", stroke.animation, opacity.animation, position.animation)
     }
 
     /// Names, score, time and state of the game.
@@ -174,7 +174,7 @@ impl FieldAnimation<'_> {
     fn legend(&mut self, field: &FieldGeometry) -> fmt::Result {
         self.drawing.scale(field)?;
         let below = Vector::new(0.0, -field.half_width() - field.border * 0.6);
-        let (x, y) = self.drawing.place(below);
+        let (x, y) = self.drawing.to_picture(below);
         let (blue, red) = (faint(TeamColour::Blue), faint(TeamColour::Red));
         let text = &mut self.drawing.text;
         for (x, stroke) in [(x, blue), (x + 18.0, red)] {
@@ -193,7 +193,7 @@ impl FieldAnimation<'_> {
     /// A text that changes: one element for each, of which one is visible.
     fn changing_text(
         &mut self,
-        place: &str,
+        position: &str,
         fill: &str,
         content: impl Fn(&FieldMoment) -> String,
     ) -> fmt::Result {
@@ -205,7 +205,11 @@ impl FieldAnimation<'_> {
             let is_shown = |moment| u8::from(content(moment) == one).to_string();
             let shown = self.stepping("opacity", self.moments.iter().map(is_shown));
             let text = &mut self.drawing.text;
-            write!(text, r#"<text {place} fill="{fill}" text-anchor="middle" opacity="{}">"#, shown.first)?;
+            write!(
+                text,
+                r#"<text {position} fill="{fill}" text-anchor="middle" opacity="{}">"#,
+                shown.first
+            )?;
             writeln!(text, "{}{}</text>", escape(&one), shown.animation)?;
         }
         Ok(())
@@ -218,11 +222,11 @@ impl FieldAnimation<'_> {
 
     /// A position that changes from moment to moment.
     fn moving(&self, positions: impl Iterator<Item = Vector>) -> AnimatedValue {
-        let place = |position| {
-            let (x, y) = self.drawing.place(position);
+        let text = |position| {
+            let (x, y) = self.drawing.to_picture(position);
             format!("{x:.0} {y:.0}")
         };
-        self.transformed("translate", positions.map(place).collect())
+        self.transformed("translate", positions.map(text).collect())
     }
 
     /// The heading of a robot, in degrees, on the shorter way from moment to moment.

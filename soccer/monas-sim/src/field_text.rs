@@ -61,8 +61,8 @@ pub fn render_text(world: &SimulatedWorld, columns: usize, rows: usize, is_colou
         };
         let number = char::from_digit(u32::from(robot.number), 36).unwrap_or('?');
         for (offset, sign) in [letter, number, heading].into_iter().enumerate() {
-            let place = (column + offset).saturating_sub(1).min(columns - 1);
-            cells[row][place] = Cell(sign, colour);
+            let position = (column + offset).saturating_sub(1).min(columns - 1);
+            cells[row][position] = Cell(sign, colour);
         }
     }
     let (column, row) = cell_of(world.ball().position);

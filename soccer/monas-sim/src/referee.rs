@@ -404,7 +404,7 @@ impl Referee {
 
     fn drop_ball(&mut self, scene: &WorldView<'_>, events: &mut Vec<EventKind>) {
         let mark = if self.coin.chance(0.5) { FieldSide::Left } else { FieldSide::Right };
-        let wanted = restart::drop_place(scene.field, scene.ball.position, mark);
+        let wanted = restart::drop_position(scene.field, scene.ball.position, mark);
         self.untouched_steps = 0;
         events.push(EventKind::DropBall { position: restart::free_for_ball(scene, wanted) });
     }

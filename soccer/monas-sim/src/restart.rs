@@ -47,8 +47,8 @@ pub(crate) fn kick_off_pose(
 fn spread(field: &FieldGeometry, rank: usize, clear_of_circle: f64) -> Vector {
     let (x, y) = PLACES[(rank - 1) % PLACES.len()];
     let least_x = field.goal_area_depth + MIN_CLEARANCE - field.half_length();
-    let place = Vector::new((x * field.half_length()).max(least_x), y * field.half_width());
-    if place.norm() >= clear_of_circle { place } else { place * (clear_of_circle / place.norm()) }
+    let position = Vector::new((x * field.half_length()).max(least_x), y * field.half_width());
+    if position.norm() >= clear_of_circle { position } else { position * (clear_of_circle / position.norm()) }
 }
 
 /// The position for a ball that left the field at `position`: on the throw-in line, set back
@@ -68,7 +68,7 @@ pub(crate) fn throw_in(
 
 /// The position at which a stuck ball is dropped: the centre, or a penalty mark if it is stuck at
 /// the centre.
-pub(crate) fn drop_place(field: &FieldGeometry, ball: Vector, mark: FieldSide) -> Vector {
+pub(crate) fn drop_position(field: &FieldGeometry, ball: Vector, mark: FieldSide) -> Vector {
     if ball.norm() > field.centre_circle_radius {
         return Vector::zeros();
     }
@@ -84,10 +84,10 @@ pub(crate) fn free_for_ball(scene: &WorldView<'_>, wanted: Vector) -> Vector {
         scene.field.half_length() - physics.ball_radius,
         scene.field.half_width() - physics.ball_radius,
     );
-    let is_free = |place: Vector| {
+    let is_free = |position: Vector| {
         scene.on_field().all(|(_, robot)| {
             let reach = if robot.phase.is_upright() { reach } else { lying };
-            (robot.pose.position - place).norm() > reach + MIN_CLEARANCE
+            (robot.pose.position - position).norm() > reach + MIN_CLEARANCE
         })
     };
     nearest(wanted, limit, is_free)
@@ -100,10 +100,10 @@ pub(crate) fn return_pose(scene: &WorldView<'_>, robot: usize) -> Pose {
     let wanted = Vector::new(0.0, side * scene.field.half_width());
     let limit = Vector::new(scene.field.half_length(), scene.field.half_width());
     let apart = 2.0 * scene.physics.robot_radius + MIN_CLEARANCE;
-    let is_free = |place: Vector| {
+    let is_free = |position: Vector| {
         let mut others = scene.on_field().filter(|(index, _)| *index != robot);
-        others.all(|(_, other)| (other.pose.position - place).norm() > apart)
-            && (scene.ball.position - place).norm() > apart
+        others.all(|(_, other)| (other.pose.position - position).norm() > apart)
+            && (scene.ball.position - position).norm() > apart
     };
     Pose::facing(nearest(wanted, limit, is_free), Vector::zeros())
 }
@@ -112,9 +112,9 @@ pub(crate) fn return_pose(scene: &WorldView<'_>, robot: usize) -> Pose {
 pub(crate) fn free_for_robot(scene: &WorldView<'_>, robot: usize, wanted: Pose) -> Pose {
     let limit = Vector::new(scene.field.half_length(), scene.field.half_width());
     let apart = 2.0 * scene.physics.robot_radius;
-    let is_free = |place: Vector| {
+    let is_free = |position: Vector| {
         let mut others = scene.on_field().filter(|(index, _)| *index != robot);
-        others.all(|(_, other)| (other.pose.position - place).norm() > apart)
+        others.all(|(_, other)| (other.pose.position - position).norm() > apart)
     };
     Pose { position: nearest(wanted.position, limit, is_free), ..wanted }
 }
@@ -150,15 +150,16 @@ pub(crate) fn waiting_pose(field: &FieldGeometry, defends: FieldSide, robot: &Ro
 /// itself if none is free.
 fn nearest(wanted: Vector, limit: Vector, is_free: impl Fn(Vector) -> bool) -> Vector {
     const DIRECTIONS: usize = 12;
-    let within =
-        |place: Vector| Vector::new(place.x.clamp(-limit.x, limit.x), place.y.clamp(-limit.y, limit.y));
+    let within = |position: Vector| {
+        Vector::new(position.x.clamp(-limit.x, limit.x), position.y.clamp(-limit.y, limit.y))
+    };
     let around = (0..20).flat_map(|ring| {
         (0..DIRECTIONS).map(move |turn| {
             let angle = std::f64::consts::TAU * turn as f64 / DIRECTIONS as f64;
             Vector::new(libm::cos(angle), libm::sin(angle)) * (0.1 * f64::from(ring))
         })
     });
-    around.map(|offset| within(wanted + offset)).find(|place| is_free(*place)).unwrap_or(wanted)
+    around.map(|offset| within(wanted + offset)).find(|position| is_free(*position)).unwrap_or(wanted)
 }
 
 #[cfg(test)]
@@ -193,13 +194,13 @@ mod tests {
     fn kick_off_places_are_apart() {
         let field = FieldGeometry::default();
         let physics = Physics::default();
-        let place = |number: u8| {
+        let position = |number: u8| {
             let rank = usize::from(number.saturating_sub(2));
             kick_off_pose(&field, &physics, FieldSide::Left, true, number, rank).position
         };
         for one in 1..=11 {
             for other in (1..=11).filter(|other| *other != one) {
-                assert!((place(one) - place(other)).norm() > 0.26, "{one} {other}");
+                assert!((position(one) - position(other)).norm() > 0.26, "{one} {other}");
             }
         }
     }
@@ -222,7 +223,7 @@ mod tests {
     #[test]
     fn a_stuck_ball_goes_to_the_centre_or_from_there_to_a_mark() {
         let field = FieldGeometry::default();
-        assert_eq!(drop_place(&field, Vector::new(2.0, 1.0), FieldSide::Left), Vector::zeros());
-        assert_eq!(drop_place(&field, Vector::new(0.1, 0.1), FieldSide::Right), Vector::new(1.2, 0.0));
+        assert_eq!(drop_position(&field, Vector::new(2.0, 1.0), FieldSide::Left), Vector::zeros());
+        assert_eq!(drop_position(&field, Vector::new(0.1, 0.1), FieldSide::Right), Vector::new(1.2, 0.0));
     }
 }

@@ -99,9 +99,9 @@ impl Snapshot {
         let mut buttons = Buttons::default();
         for &(one, other) in self.contacts.iter().filter(|(one, other)| *one == robot || *other == robot) {
             let other = if one == robot { other } else { one };
-            let place = self.robots[robot].pose.to_own(self.robots[other].pose.position);
-            buttons.left_bumper |= place.x > place.y.abs() && place.y >= 0.0;
-            buttons.right_bumper |= place.x > place.y.abs() && place.y <= 0.0;
+            let position = self.robots[robot].pose.to_own(self.robots[other].pose.position);
+            buttons.left_bumper |= position.x > position.y.abs() && position.y >= 0.0;
+            buttons.right_bumper |= position.x > position.y.abs() && position.y <= 0.0;
         }
         buttons
     }

@@ -13,7 +13,7 @@ use crate::functionality::field::{FieldModel, Goal};
 use crate::functionality::game;
 use crate::functionality::geometry::{self, heading};
 use crate::functionality::interception::Crossing;
-use crate::functionality::kick_off::kick_off_place;
+use crate::functionality::kick_off::kick_off_pose;
 use crate::functionality::landmarks::{GoalPost, Landmark, LandmarkSighting};
 use crate::functionality::lights;
 use crate::functionality::localisation::Localisation;
@@ -111,16 +111,16 @@ impl GameState {
         }
     }
 
-    /// The player's place for the next kick-off.
-    pub fn place(&self) -> Isometry2<f64> {
+    /// The player's pose for the next kick-off.
+    pub fn kick_off_pose(&self) -> Isometry2<f64> {
         geometry::pose(self.place_x, self.place_y, self.place_heading)
     }
 
-    /// The same state with the place for the next kick-off, which follows from the number.
-    pub fn with_place(self) -> GameState {
-        let place = kick_off_place(&self.field(), self.number, self.kick_off_own);
-        let (place_x, place_y) = (place.translation.x, place.translation.y);
-        GameState { place_x, place_y, place_heading: heading(&place), ..self }
+    /// The same state with the pose for the next kick-off, which follows from the number.
+    pub fn with_kick_off_pose(self) -> GameState {
+        let wanted = kick_off_pose(&self.field(), self.number, self.kick_off_own);
+        let (place_x, place_y) = (wanted.translation.x, wanted.translation.y);
+        GameState { place_x, place_y, place_heading: heading(&wanted), ..self }
     }
 
     /// The goal of the given colour. Only yellow and blue distinguish the goals: both goals may be

@@ -171,10 +171,10 @@ fn lies_on(line: &LineSegment, other: &LineSegment) -> bool {
     let along = (b - a) / (b - a).norm().max(1e-9);
     let is_on = |point: Point2<f64>| {
         let away = point - a;
-        let place = away.dot(&along);
+        let position = away.dot(&along);
         away.perp(&along).abs() < SAME_LINE_DISTANCE
-            && place > -SAME_LINE_DISTANCE
-            && place < (b - a).norm() + SAME_LINE_DISTANCE
+            && position > -SAME_LINE_DISTANCE
+            && position < (b - a).norm() + SAME_LINE_DISTANCE
     };
     line.ends.iter().all(|end| is_on(end.position))
 }

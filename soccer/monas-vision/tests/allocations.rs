@@ -25,10 +25,10 @@ unsafe impl GlobalAlloc for Counting {
         unsafe { System.alloc(layout) }
     }
 
-    unsafe fn dealloc(&self, place: *mut u8, layout: Layout) {
+    unsafe fn dealloc(&self, position: *mut u8, layout: Layout) {
         // SAFETY: the caller guarantees that the block came from `alloc` above, that is from
         // `System`, with the same layout.
-        unsafe { System.dealloc(place, layout) }
+        unsafe { System.dealloc(position, layout) }
     }
 }
 

@@ -62,8 +62,8 @@ impl AsemeLanguage {
         };
         let transitions = |transitions: &[TransitionOutline]| -> Value {
             let transition = |it: &TransitionOutline| {
-                let place = it.span.map(|span| positions.range(span));
-                json!({"from": place.map(|place| place.0), "to": place.map(|place| place.1),
+                let range = it.span.map(|span| positions.range(span));
+                json!({"from": range.map(|range| range.0), "to": range.map(|range| range.1),
                     "expression": it.expression, "modifiers": it.modifiers, "shared": it.is_shared})
             };
             transitions.iter().map(transition).collect()

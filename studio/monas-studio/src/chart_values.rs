@@ -102,7 +102,7 @@ pub(crate) fn shown(key: &ChartKey, values: &Value, decoder: &MessageDecoder) ->
 
 /// The bytes of a hexadecimal text, up to the first invalid digit.
 fn bytes(digits: &str) -> Vec<u8> {
-    let pairs = (0..digits.len() / 2).map_while(|place| digits.get(2 * place..2 * place + 2));
+    let pairs = (0..digits.len() / 2).map_while(|index| digits.get(2 * index..2 * index + 2));
     pairs.map_while(|pair| u8::from_str_radix(pair, 16).ok()).collect()
 }
 

@@ -105,9 +105,9 @@ impl TapeRun {
 fn literal(value: &Value) -> Option<ExpressionKind> {
     let signed = |number: f64| {
         let kind = ExpressionKind::Decimal(number.abs());
-        let place = Default::default();
+        let position = Default::default();
         match number.is_sign_negative() {
-            true => ExpressionKind::Negative(Box::new(Expression { kind, position: place })),
+            true => ExpressionKind::Negative(Box::new(Expression { kind, position })),
             false => kind,
         }
     };

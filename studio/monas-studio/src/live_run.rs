@@ -218,9 +218,9 @@ impl LiveState {
                 ring.note(view.now, &event);
             }
             for agent in &agents {
-                for (place, chart) in agent.charts.iter().enumerate() {
+                for (index, chart) in agent.charts.iter().enumerate() {
                     let (host, name) = (agent.host.clone(), agent.name.clone());
-                    let key = ChartKey { host, agent: name, chart: place as u32 };
+                    let key = ChartKey { host, agent: name, chart: index as u32 };
                     let known = view.charts.get_mut(&key);
                     match known.filter(|known| !known.is_stale() && known.model == chart.model) {
                         Some(known) if known.state != chart.state => {

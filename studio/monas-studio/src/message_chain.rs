@@ -205,8 +205,8 @@ impl<'a> ChainFinder<'a> {
         let key = (agent.host.clone(), agent.agent.clone());
         let cycles = self.cycles.entry(key).or_insert_with(|| tape.all_cycles(&agent));
         // The cycle in which it was published is recorded after it.
-        let place = cycles.partition_point(|(index, _)| *index < message);
-        let before = &cycles[..(place + 1).min(cycles.len())];
+        let index = cycles.partition_point(|(index, _)| *index < message);
+        let before = &cycles[..(index + 1).min(cycles.len())];
         let mut newest: BTreeMap<(u64, &str), usize> = BTreeMap::new();
         for (_, cycle) in before.iter().rev() {
             for delivery in cycle.delivered.iter().filter(|delivery| is_wanted(delivery)) {

@@ -89,20 +89,20 @@ impl TapeRun {
     fn field(&self, path: &Path, moment: &ReadMoment<'_>) -> Option<ReadValue> {
         let chart = moment.chart;
         let segments: Vec<&str> = path.segments.iter().map(|name| name.text.as_str()).collect();
-        let (place, topic) = segments.iter().enumerate().find_map(|(place, name)| {
+        let (index, topic) = segments.iter().enumerate().find_map(|(index, name)| {
             let of_type = self.channels().iter().find(|channel| {
                 channel.host == chart.host && channel.message_type.rsplit('.').next() == Some(name)
             });
-            Some((place, of_type?.topic.clone()))
+            Some((index, of_type?.topic.clone()))
         })?;
-        let message = self.delivered(&topic, &segments[..place], moment);
+        let message = self.delivered(&topic, &segments[..index], moment);
         let mut value = match message {
             Some(index) => {
                 self.entry(index).map(|(entry, _)| self.decoder().decode(&topic, self.bytes(entry)))
             }
             None => None,
         };
-        for field in &segments[place + 1..] {
+        for field in &segments[index + 1..] {
             value = value.and_then(|value| value.get(*field).cloned());
         }
         let found = message.and_then(|index| self.entry(index));

@@ -160,8 +160,8 @@ impl RunRing {
 
     /// The state of the run after the messages up to a number, at a time.
     pub(crate) fn moment(&self, number: u64, time: u64) -> Option<RunView> {
-        let place = self.moments.partition_point(|moment| moment.number <= number);
-        let kept = self.moments.get(place.checked_sub(1)?)?;
+        let index = self.moments.partition_point(|moment| moment.number <= number);
+        let kept = self.moments.get(index.checked_sub(1)?)?;
         let mut view = kept.view.clone();
         view.restore_tables(&kept.tables);
         self.advance(&mut view, kept.number, number, time).then_some(view)

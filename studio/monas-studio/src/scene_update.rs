@@ -52,7 +52,7 @@ impl SceneHistory {
     pub(crate) fn update(&mut self, picture: &ScenePicture, time: u64) -> SceneUpdate {
         let mut entities: Vec<SceneEntity> = Vec::new();
         entities.extend(picture.bodies.iter().map(body));
-        entities.extend(picture.objects.iter().enumerate().map(|(place, object)| thing(place, object)));
+        entities.extend(picture.objects.iter().enumerate().map(|(index, object)| thing(index, object)));
         entities.extend(picture.beliefs.iter().map(|one| belief(one, &picture.bodies)));
         entities.extend(seen_lines(picture));
         let present: BTreeSet<String> = entities.iter().map(|entity| entity.id.clone()).collect();
@@ -128,14 +128,14 @@ fn body(body: &Body) -> SceneEntity {
     SceneEntity { arrows: vec![nose], cylinders: vec![trunk], texts: vec![text], ..entity(id) }
 }
 
-fn thing(place: usize, object: &SceneObject) -> SceneEntity {
+fn thing(index: usize, object: &SceneObject) -> SceneEntity {
     let size = 2.0 * object.radius;
     let sphere = SpherePrimitive {
         pose: pose(object.x, object.y, object.radius, 0.0),
         size: vector(size, size, size),
         color: Some(OBJECT_COLOUR),
     };
-    SceneEntity { spheres: vec![sphere], ..entity(format!("{} {place}", object.kind)) }
+    SceneEntity { spheres: vec![sphere], ..entity(format!("{} {index}", object.kind)) }
 }
 
 /// A ring on the ground, with a line in the direction of a heading.
@@ -247,8 +247,8 @@ mod tests {
         let ends = [(1.0, 0.0), (1.0, 1.0), (2.0, 0.0), (2.0, 1.0)].map(|(x, y)| point(x, y));
         assert_eq!(first.entities[3].lines[0].points, ends);
         assert_eq!(first.entities[0].timestamp, Some(Timestamp { seconds: 2, nanos: 500_000_000 }));
-        let place = |entity: &SceneEntity| entity.cylinders[0].pose.and_then(|pose| pose.position);
-        assert_eq!(place(&first.entities[1]), vector(2.0, 0.0, BODY_HEIGHT / 2.0));
+        let position = |entity: &SceneEntity| entity.cylinders[0].pose.and_then(|pose| pose.position);
+        assert_eq!(position(&first.entities[1]), vector(2.0, 0.0, BODY_HEIGHT / 2.0));
         let moved = ScenePicture { bodies: vec![robot("1", 1.5)], seen_lines: Vec::new(), ..picture };
         let second = history.update(&moved, 3_000_000_000);
         assert_eq!(ids(&second), ["body 0 1", "ball 0"], "the ground is known");

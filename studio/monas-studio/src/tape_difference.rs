@@ -98,8 +98,8 @@ impl TapeRun {
             times.into_iter().flatten().min()
         };
         // Of those of one time the one that was published first.
-        let place = |key: &MessageKey<'_>| (when(key), own.get(key).or_else(|| others.get(key)).copied());
-        let key = differing.min_by_key(|key| place(key))?;
+        let order = |key: &MessageKey<'_>| (when(key), own.get(key).or_else(|| others.get(key)).copied());
+        let key = differing.min_by_key(|key| order(key))?;
         let (host, publisher, topic, sequence) = *key;
         let message = |tape: &TapeRun, index: Option<&usize>| {
             let found = index.and_then(|index| tape.entry(*index));

@@ -23,8 +23,8 @@ impl TapePair {
             let text =
                 format!("{topic} number {} by {} of {host}", difference.sequence, difference.publisher);
             let time = |event: &Value| event["t"].as_f64().unwrap_or_default();
-            let place = events.partition_point(|event| time(event) < difference.time);
-            events.insert(place, json!({"t": difference.time, "kind": "first difference", "text": text}));
+            let index = events.partition_point(|event| time(event) < difference.time);
+            events.insert(index, json!({"t": difference.time, "kind": "first difference", "text": text}));
         }
         TapePair { tape, other, events }
     }

@@ -250,8 +250,8 @@ impl TapeRun {
     /// The latest kept moment with at most so many messages.
     pub(crate) fn moment_before(&self, count: usize) -> &TapeMoment {
         let moments = &self.0.moments;
-        let place = moments.partition_point(|moment| moment.count <= count);
-        &moments[place.max(1) - 1]
+        let index = moments.partition_point(|moment| moment.count <= count);
+        &moments[index.max(1) - 1]
     }
 
     /// The number of messages up to and with the next step of a chart after `count` messages, or

@@ -141,9 +141,9 @@ impl TapeRun {
         let moment = ReadMoment {
             chart,
             scope: scopes.get(transition.source.0 as usize).copied().unwrap_or(ScopeId::ROOT),
-            count: decided.map_or(count, |place| steps[place].index),
+            count: decided.map_or(count, |step| steps[step].index),
             is_step: decided.is_some(),
-            time: decided.map_or(time, |place| steps[place].step.time),
+            time: decided.map_or(time, |step| steps[step].step.time),
             steps: &steps[..decided.unwrap_or(steps.len())],
         };
         let guard = transition.expression.guard.as_ref().filter(|_| verdict != Verdict::NotReached);
@@ -153,7 +153,7 @@ impl TapeRun {
             format!("{} -> {}", names.name(other.source), names.name(other.target))
         };
         let others = decided.filter(|_| verdict == Verdict::Instead);
-        let others = others.map(|place| instead(statechart, &steps[place], id)).unwrap_or_default();
+        let others = others.map(|step| instead(statechart, &steps[step], id)).unwrap_or_default();
         let time_of = |step: Option<&RecordedStep>| step.map(|step| seconds(step.step.time));
         let mut explanation = TransitionExplanation {
             host: chart.host.clone(),
@@ -174,7 +174,7 @@ impl TapeRun {
             instead: others.into_iter().map(name).collect(),
             held_by: held_by(statechart, steps, id, verdict),
         };
-        let was_preempted = decided.is_some_and(|place| steps[place].step.preempted.contains(&id.0));
+        let was_preempted = decided.is_some_and(|step| steps[step].step.preempted.contains(&id.0));
         explanation.reason = reason(&explanation, guard.is_some(), was_preempted);
         Some(explanation)
     }
@@ -247,9 +247,9 @@ impl TapeRun {
 fn verdict(chart: &Statechart, steps: &[RecordedStep], id: TransitionId) -> (Verdict, Option<usize>) {
     let source = chart.transition(id).source;
     let fired = steps.iter().rposition(|step| step.has_fired(id));
-    let is_last = |place: usize| steps.last().is_some_and(|last| last.step.time == steps[place].step.time);
-    if let Some(place) = fired.filter(|place| is_last(*place)) {
-        return (Verdict::Fired, Some(place));
+    let is_last = |step: usize| steps.last().is_some_and(|last| last.step.time == steps[step].step.time);
+    if let Some(step) = fired.filter(|step| is_last(*step)) {
+        return (Verdict::Fired, Some(step));
     }
     if ChartHistory::is_active(steps, source) {
         return (Verdict::Waits, None);
@@ -258,8 +258,8 @@ fn verdict(chart: &Statechart, steps: &[RecordedStep], id: TransitionId) -> (Ver
         step.step.exits.contains(&source.0) || segments_of(chart, step, source).next().is_some()
     };
     match steps.iter().rposition(passed) {
-        Some(place) if fired == Some(place) => (Verdict::Fired, Some(place)),
-        Some(place) => (Verdict::Instead, Some(place)),
+        Some(step) if fired == Some(step) => (Verdict::Fired, Some(step)),
+        Some(step) => (Verdict::Instead, Some(step)),
         None => (Verdict::NotReached, None),
     }
 }

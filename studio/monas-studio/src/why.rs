@@ -153,8 +153,8 @@ impl TapeRun {
         let history = self.history(chart);
         let taken = history.until(count);
         let last = LastEntry::of(taken, node);
-        let is_shown = |place: &usize| !taken[*place].is_before;
-        let time = |place: usize| Some(seconds(self.entry(taken[place].index)?.0.time));
+        let is_shown = |step: &usize| !taken[*step].is_before;
+        let time = |step: usize| Some(seconds(self.entry(taken[step].index)?.0.time));
         let entered = last.entered.filter(is_shown);
         let begins = history.steps.first().filter(|first| first.is_before && entered.is_none());
         let mut explanation = Explanation {
@@ -181,9 +181,9 @@ impl TapeRun {
         }
         steps.sort_unstable();
         let scopes = statechart.scopes();
-        for place in steps {
-            let RecordedStep { index, step: record, .. } = &taken[place];
-            for segment in way_to(statechart, record, node) {
+        for number in steps {
+            let RecordedStep { index, step: record, .. } = &taken[number];
+            for segment in segments_to(statechart, record, node) {
                 let transition = statechart.transition(segment);
                 let scope = scopes.get(transition.source.0 as usize).copied().unwrap_or(ScopeId::ROOT);
                 let guard = transition.expression.guard.as_ref();
@@ -193,7 +193,7 @@ impl TapeRun {
                     count: *index,
                     is_step: true,
                     time: record.time,
-                    steps: &taken[..place],
+                    steps: &taken[..number],
                 };
                 explanation.segments.push(TakenSegment {
                     source: names.name(transition.source).to_owned(),
@@ -210,15 +210,15 @@ impl TapeRun {
 impl LastEntry {
     fn of(steps: &[RecordedStep], node: NodeId) -> LastEntry {
         let mut last = LastEntry { entered: None, left: None, by_node: BTreeMap::new() };
-        for (place, RecordedStep { step, .. }) in steps.iter().enumerate() {
+        for (number, RecordedStep { step, .. }) in steps.iter().enumerate() {
             if step.exits.contains(&node.0) && last.entered.is_some() && last.left.is_none() {
-                last.left = Some(place);
+                last.left = Some(number);
             }
             if step.entries.contains(&node.0) {
-                (last.entered, last.left) = (Some(place), None);
+                (last.entered, last.left) = (Some(number), None);
             }
             if last.left.is_none() {
-                last.by_node.extend(step.entries.iter().map(|entered| (*entered, place)));
+                last.by_node.extend(step.entries.iter().map(|entered| (*entered, number)));
             }
         }
         last
@@ -226,21 +226,21 @@ impl LastEntry {
 }
 
 /// The segments of a step that lead to a node or into a composite around it, in order.
-fn way_to(chart: &Statechart, step: &Chart, node: NodeId) -> Vec<TransitionId> {
+fn segments_to(chart: &Statechart, step: &Chart, node: NodeId) -> Vec<TransitionId> {
     let count = chart.transitions().len();
     let mut left: Vec<u32> = step.selected.iter().chain(&step.taken).copied().collect();
     left.retain(|segment| (*segment as usize) < count);
     let mut into = |target: NodeId| {
-        let place =
+        let position =
             left.iter().position(|segment| chart.transition(TransitionId(*segment)).target == target)?;
-        Some(TransitionId(left.remove(place)))
+        Some(TransitionId(left.remove(position)))
     };
-    let mut way = Vec::new();
+    let mut segments = Vec::new();
     let mut next = std::iter::once(node).chain(chart.ancestors(node)).find_map(&mut into);
     while let Some(segment) = next {
-        way.insert(0, segment);
+        segments.insert(0, segment);
         let source = chart.transition(segment).source;
         next = if is_connector(chart.node(source).kind) { into(source) } else { None };
     }
-    way
+    segments
 }

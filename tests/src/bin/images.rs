@@ -40,7 +40,7 @@ fn main() -> ExitCode {
 fn row(found: &BallKnowledge) -> String {
     let (known, wrong) =
         (100.0 * found.known_share(), 100.0 * found.wrong as f64 / found.in_view.max(1) as f64);
-    let (error, place) = (100.0 * found.error(), found.pose_error());
+    let (error, distance) = (100.0 * found.error(), found.pose_error());
     let BallKnowledge { in_view, kicks, .. } = found;
-    format!("| {in_view} | {known:.1} % | {wrong:.1} % | {error:.1} % | {place:.2} m | {kicks} |")
+    format!("| {in_view} | {known:.1} % | {wrong:.1} % | {error:.1} % | {distance:.2} m | {kicks} |")
 }

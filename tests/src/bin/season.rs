@@ -57,10 +57,10 @@ fn poses(variant: &str, seeds: &str, seconds: &str) -> Result<(), String> {
     let (from, to) = seeds.split_once('-').ok_or_else(|| format!("`{seeds}` are not seeds"))?;
     let (_, from, length) = game(variant, from, seconds)?;
     let (variant, to, _) = game(variant, to, seconds)?;
-    let (mut places, mut turns, mut recoveries, mut lost) = (Vec::new(), Vec::new(), Vec::new(), 0);
+    let (mut distances, mut turns, mut recoveries, mut lost) = (Vec::new(), Vec::new(), Vec::new(), 0);
     for seed in from..=to {
         let errors = pose_errors(variant, seed, length)?;
-        places.extend(errors.places);
+        distances.extend(errors.distances);
         turns.extend(errors.turns);
         let kidnapped = kidnap(variant, seed, length)?;
         recoveries.extend(kidnapped.recoveries);
@@ -70,7 +70,7 @@ fn poses(variant: &str, seeds: &str, seconds: &str) -> Result<(), String> {
         let [half, most, nearly] = [0.5, 0.9, 0.95].map(|part| quantile(values, part).unwrap_or(f64::NAN));
         println!("{what:<28} median {half:.2} {unit}, 90 % {most:.2} {unit}, 95 % {nearly:.2} {unit}");
     };
-    print("error of the place", &places, "m");
+    print("error of the place", &distances, "m");
     print("error of the heading", &turns, "rad");
     print("recovery after kidnapping", &recoveries, "s");
     println!("{} of {} kidnapped robots were lost for 30 s", lost, recoveries.len() + lost);

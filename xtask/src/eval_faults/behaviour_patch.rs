@@ -1,6 +1,6 @@
-//! A change of behaviour in all ways, a fault or a change request, as a file: prose, `Class:`,
-//! `Player:`, and for each way `Methodology:` followed by unified diffs or `Cannot be made:` with
-//! the reason.
+//! A change of behaviour in all methodologies, a fault or a change request, as a file: prose,
+//! `Class:`, `Player:`, and for each methodology `Methodology:` followed by unified diffs or
+//! `Cannot be made:` with the reason.
 
 use std::collections::BTreeMap;
 use std::error::Error;
@@ -28,7 +28,7 @@ impl Methodology {
         }
     }
 
-    /// Whether a file is a hand-written source of this way.
+    /// Whether a file is a hand-written source of this methodology.
     pub(crate) fn owns(self, file: &str) -> bool {
         let prefixes: &[&str] = match self {
             Methodology::Direct => &["soccer/monas-eval/src/direct", "soccer/monas-eval/src/thresholds/"],
@@ -41,15 +41,15 @@ impl Methodology {
     }
 }
 
-/// The fault in one way.
+/// The fault in one methodology.
 pub(crate) enum Edit {
     /// The file of each diff, and the diff.
     Diffs(Vec<(String, String)>),
-    /// Why the fault has no place in this way.
+    /// Why the fault has no place in this methodology.
     CannotBeMade(String),
 }
 
-/// A fault or a change request, in all ways.
+/// A fault or a change request, in all methodologies.
 #[derive(Default)]
 pub(crate) struct BehaviourPatch {
     pub(crate) name: String,
@@ -78,7 +78,7 @@ pub(crate) fn read(folder: &Path) -> Result<Vec<BehaviourPatch>, Box<dyn Error>>
 
 fn parse(name: &str, text: &str) -> Result<BehaviourPatch, String> {
     let mut fault = BehaviourPatch { name: name.to_owned(), ..BehaviourPatch::default() };
-    let (head, ways) =
+    let (head, methodologies) =
         text.split_once("\nMethodology: ").ok_or_else(|| format!("{name}: no `Methodology:`"))?;
     for line in head.lines() {
         match line.split_once(": ") {
@@ -87,24 +87,30 @@ fn parse(name: &str, text: &str) -> Result<BehaviourPatch, String> {
             _ => fault.prose.push_str(line.trim()),
         }
     }
-    for section in ways.split("\nMethodology: ") {
-        let (way, body) = section.split_once('\n').unwrap_or((section, ""));
-        let way = Methodology::ALL.into_iter().find(|it| it.name() == way.trim());
-        let way = way.ok_or_else(|| format!("{name}: a way is direct, agents or aseme"))?;
-        fault.edits.insert(way, edit(body).ok_or_else(|| format!("{name}: no edit for {}", way.name()))?);
+    for section in methodologies.split("\nMethodology: ") {
+        let (methodology, body) = section.split_once('\n').unwrap_or((section, ""));
+        let methodology = Methodology::ALL.into_iter().find(|it| it.name() == methodology.trim());
+        let methodology =
+            methodology.ok_or_else(|| format!("{name}: a methodology is direct, agents or aseme"))?;
+        fault.edits.insert(
+            methodology,
+            edit(body).ok_or_else(|| format!("{name}: no edit for {}", methodology.name()))?,
+        );
     }
     let is_complete = !fault.prose.is_empty()
         && !fault.class.is_empty()
         && ["goalie", "attacker"].contains(&fault.player.as_str())
         && fault.edits.len() == Methodology::ALL.len();
-    is_complete.then_some(fault).ok_or_else(|| format!("{name}: prose, class, player or a way is missing"))
+    is_complete
+        .then_some(fault)
+        .ok_or_else(|| format!("{name}: prose, class, player or a methodology is missing"))
 }
 
 fn edit(body: &str) -> Option<Edit> {
     if let Some(reason) = body.trim().strip_prefix("Cannot be made: ") {
         return Some(Edit::CannotBeMade(reason.trim().to_owned())).filter(|_| !reason.trim().is_empty());
     }
-    // Blank lines may separate the last diff from the next way; a blank line of a diff has a space.
+    // Blank lines may separate the last diff from the next methodology; diffs have a space there.
     let body = format!("{}\n", body.trim_end_matches('\n'));
     let mut diffs: Vec<(String, String)> = Vec::new();
     for line in body.split_inclusive('\n') {
@@ -118,16 +124,18 @@ fn edit(body: &str) -> Option<Edit> {
 }
 
 impl BehaviourPatch {
-    /// The files that it changes in a way, with the fault.
+    /// The files that it changes in a methodology, with the fault.
     pub(crate) fn apply(
         &self,
-        way: Methodology,
+        methodology: Methodology,
         read: impl Fn(&str) -> Result<String, Box<dyn Error>>,
     ) -> Result<BTreeMap<String, String>, Box<dyn Error>> {
-        match self.edits.get(&way) {
-            Some(Edit::Diffs(diffs)) => patch::apply(&format!("{} ({})", self.name, way.name()), diffs, read),
+        match self.edits.get(&methodology) {
+            Some(Edit::Diffs(diffs)) => {
+                patch::apply(&format!("{} ({})", self.name, methodology.name()), diffs, read)
+            }
             Some(Edit::CannotBeMade(reason)) => Err(format!("{}: {reason}", self.name).into()),
-            None => Err(format!("{}: nothing for {}", self.name, way.name()).into()),
+            None => Err(format!("{}: nothing for {}", self.name, methodology.name()).into()),
         }
     }
 }
@@ -135,10 +143,10 @@ impl BehaviourPatch {
 impl BehaviourPatch {
     /// The lines of code, positions and files that it changes in the sources of a methodology,
     /// without tests.
-    pub(crate) fn extent(&self, way: Methodology) -> (usize, usize, usize) {
-        let Some(Edit::Diffs(diffs)) = self.edits.get(&way) else { return (0, 0, 0) };
+    pub(crate) fn extent(&self, methodology: Methodology) -> (usize, usize, usize) {
+        let Some(Edit::Diffs(diffs)) = self.edits.get(&methodology) else { return (0, 0, 0) };
         let own: Vec<&str> =
-            diffs.iter().filter(|(file, _)| way.owns(file)).map(|(_, diff)| diff.as_str()).collect();
+            diffs.iter().filter(|(file, _)| methodology.owns(file)).map(|(_, diff)| diff.as_str()).collect();
         let lines = own.iter().flat_map(|diff| diff.lines());
         let is_code = |line: &str| {
             let code = line.strip_prefix(['+', '-']).map(str::trim);
@@ -174,7 +182,10 @@ mod tests {
     fn comments_and_tests_are_no_edits() {
         let of_models = TEXT.replace("x.srm", "models/x.srm").replace("+two\n", "+two\n+# why\n");
         let fault = parse("f", &of_models).unwrap();
-        assert_eq!(Methodology::ALL.map(|way| fault.extent(way)), [(0, 0, 0), (0, 0, 0), (2, 1, 1)]);
+        assert_eq!(
+            Methodology::ALL.map(|methodology| fault.extent(methodology)),
+            [(0, 0, 0), (0, 0, 0), (2, 1, 1)]
+        );
     }
 
     #[test]

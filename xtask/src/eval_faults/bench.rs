@@ -19,7 +19,7 @@ pub(crate) enum Finder {
     Check,
     /// A failed test of decisions: unit tests, and scenarios of a role.
     Tests,
-    /// A match that fails, or counts that differ from those of the unchanged way.
+    /// A match that fails, or counts that differ from those of the unchanged methodology.
     Matches,
     /// Nothing.
     NotFound,
@@ -57,12 +57,12 @@ pub(crate) struct Finding {
     pub(crate) evidence: String,
 }
 
-/// The sums of the matches of a way.
+/// The sums of the matches of a methodology.
 type Counts = BTreeMap<String, f64>;
 
 /// Seeds of the matches in halves, which are played at the same time.
 const SEEDS: [(u32, u32); 2] = [(1, 5), (6, 10)];
-/// Seeds of the unchanged way in matches that have to be like those of `SEEDS`.
+/// Seeds of the unchanged methodology in matches that have to be like those of `SEEDS`.
 const OTHER_SEEDS: [(u32, u32); 2] = [(11, 15), (16, 20)];
 /// The simulated time of a match, seconds.
 const SECONDS: &str = "600";
@@ -75,7 +75,7 @@ const ASEME_MATCH: &str = "config/evaluation/aseme.xml";
 /// The folder of the roles of red, relative to the workspace.
 const OPPONENT: &str = "config/evaluation/opponent";
 
-/// A copy of the workspace, the command `monas`, and what the unchanged ways do.
+/// A copy of the workspace, the command `monas`, and what the unchanged methodologies do.
 pub(crate) struct Bench {
     copy: WorkspaceCopy,
     monas: PathBuf,
@@ -85,7 +85,7 @@ pub(crate) struct Bench {
 }
 
 impl Bench {
-    /// Builds the programs, and requires that no stage finds a fault in the unchanged ways.
+    /// Builds the programs, and requires that no stage finds a fault without a change.
     pub(crate) fn build(root: &Path) -> Result<Bench, Box<dyn Error>> {
         let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), PathBuf::from);
         // with the features of the tests, so that nothing is built twice
@@ -104,8 +104,8 @@ impl Bench {
             }
         }
         bench.learn(configuration_check())?;
-        for way in Methodology::ALL {
-            bench.learn_counts(way)?;
+        for methodology in Methodology::ALL {
+            bench.learn_counts(methodology)?;
         }
         Ok(bench)
     }
@@ -120,68 +120,80 @@ impl Bench {
         Ok(())
     }
 
-    /// Plays the unchanged way, which has to pass all stages, with other seeds too.
-    fn learn_counts(&mut self, way: Methodology) -> Result<(), Box<dyn Error>> {
+    /// Plays the unchanged methodology, which has to pass all stages, with other seeds too.
+    fn learn_counts(&mut self, methodology: Methodology) -> Result<(), Box<dyn Error>> {
         for player in ["goalie", "attacker"] {
-            let first = [self.compile(way)?, self.check(way, player)?, self.test(way, player)?];
+            let first = [
+                self.compile(methodology)?,
+                self.check(methodology, player)?,
+                self.test(methodology, player)?,
+            ];
             if let Some(evidence) = first.into_iter().flatten().next() {
-                return Err(format!("{} without a fault: {evidence}", way.name()).into());
+                return Err(format!("{} without a fault: {evidence}", methodology.name()).into());
             }
         }
-        let counts = self.play(way, SEEDS)?.map_err(|error| format!("{}: {error}", way.name()))?;
-        let others = self.play(way, OTHER_SEEDS)?.map_err(|error| format!("{}: {error}", way.name()))?;
-        println!("{:<24} {:<8} {}", "without a fault", way.name(), sums(&counts));
-        println!("{:<24} {:<8} {}", "with other seeds", way.name(), sums(&others));
+        let counts =
+            self.play(methodology, SEEDS)?.map_err(|error| format!("{}: {error}", methodology.name()))?;
+        let others = self
+            .play(methodology, OTHER_SEEDS)?
+            .map_err(|error| format!("{}: {error}", methodology.name()))?;
+        println!("{:<24} {:<8} {}", "without a fault", methodology.name(), sums(&counts));
+        println!("{:<24} {:<8} {}", "with other seeds", methodology.name(), sums(&others));
         if let Some(evidence) = difference(&counts, &others) {
-            return Err(format!("{}: other seeds are found: {evidence}", way.name()).into());
+            return Err(format!("{}: other seeds are found: {evidence}", methodology.name()).into());
         }
-        self.counts.insert(way, counts);
+        self.counts.insert(methodology, counts);
         Ok(())
     }
 
-    /// Makes a fault in a way and runs the stages until one finds it.
-    pub(crate) fn find(&self, way: Methodology, fault: &BehaviourPatch) -> Result<Finding, Box<dyn Error>> {
-        let changed = fault.apply(way, |file| self.copy.read(file))?;
-        self.copy.with(&changed, || self.first_finding(way, &fault.player))?
+    /// Makes a fault in a methodology and runs the stages until one finds it.
+    pub(crate) fn find(
+        &self,
+        methodology: Methodology,
+        fault: &BehaviourPatch,
+    ) -> Result<Finding, Box<dyn Error>> {
+        let changed = fault.apply(methodology, |file| self.copy.read(file))?;
+        self.copy.with(&changed, || self.first_finding(methodology, &fault.player))?
     }
 
-    /// Makes a change request in a way, which no stage before the matches may find; returns the
-    /// time from the edit until the program runs.
+    /// Makes a change request in a methodology, which no stage before the matches may find; returns
+    /// the time from the edit until the program runs.
     #[expect(clippy::disallowed_methods, reason = "it measures a build")]
     pub(crate) fn adopt(
         &self,
-        way: Methodology,
+        methodology: Methodology,
         change: &BehaviourPatch,
     ) -> Result<Duration, Box<dyn Error>> {
-        let changed = change.apply(way, |file| Ok(self.copy.read(file).unwrap_or_default()))?;
+        let changed = change.apply(methodology, |file| Ok(self.copy.read(file).unwrap_or_default()))?;
         self.copy.with(&changed, || {
             let began = Instant::now();
-            let compiled = self.compile(way)?;
+            let compiled = self.compile(methodology)?;
             let built = began.elapsed();
-            let found = [compiled, self.check(way, &change.player)?, self.test(way, &change.player)?];
+            let found =
+                [compiled, self.check(methodology, &change.player)?, self.test(methodology, &change.player)?];
             match found.into_iter().flatten().next() {
-                Some(evidence) => Err(format!("{} ({}): {evidence}", change.name, way.name()).into()),
+                Some(evidence) => Err(format!("{} ({}): {evidence}", change.name, methodology.name()).into()),
                 None => Ok(built),
             }
         })?
     }
 
-    fn first_finding(&self, way: Methodology, player: &str) -> Result<Finding, Box<dyn Error>> {
+    fn first_finding(&self, methodology: Methodology, player: &str) -> Result<Finding, Box<dyn Error>> {
         let finding = |finder, evidence| Ok(Finding { finder, evidence });
-        if let Some(evidence) = self.compile(way)? {
+        if let Some(evidence) = self.compile(methodology)? {
             return finding(Finder::Compiler, evidence);
         }
-        if let Some(evidence) = self.check(way, player)? {
+        if let Some(evidence) = self.check(methodology, player)? {
             return finding(Finder::Check, evidence);
         }
-        if let Some(evidence) = self.test(way, player)? {
+        if let Some(evidence) = self.test(methodology, player)? {
             return finding(Finder::Tests, evidence);
         }
-        let counts = match self.play(way, SEEDS)? {
+        let counts = match self.play(methodology, SEEDS)? {
             Ok(counts) => counts,
             Err(evidence) => return finding(Finder::Matches, evidence),
         };
-        let unchanged = self.counts.get(&way).ok_or("the unchanged way was not played")?;
+        let unchanged = self.counts.get(&methodology).ok_or("the unchanged methodology was not played")?;
         match difference(unchanged, &counts) {
             Some(evidence) => finding(Finder::Matches, evidence),
             None => finding(Finder::NotFound, sums(&counts)),
@@ -189,8 +201,8 @@ impl Bench {
     }
 
     /// The first error or warning of the compiler. A role is not compiled.
-    fn compile(&self, way: Methodology) -> Result<Option<String>, Box<dyn Error>> {
-        let output = match way {
+    fn compile(&self, methodology: Methodology) -> Result<Option<String>, Box<dyn Error>> {
+        let output = match methodology {
             Methodology::Direct | Methodology::Agents => self.cargo(&["build", "--example", "play"])?,
             Methodology::Aseme => return Ok(None),
         };
@@ -204,8 +216,8 @@ impl Bench {
     }
 
     /// The first line of a check that is not in that of the unchanged sources.
-    fn check(&self, way: Methodology, player: &str) -> Result<Option<String>, Box<dyn Error>> {
-        let checks = match way {
+    fn check(&self, methodology: Methodology, player: &str) -> Result<Option<String>, Box<dyn Error>> {
+        let checks = match methodology {
             Methodology::Direct => return Ok(None),
             Methodology::Agents => vec![configuration_check()],
             Methodology::Aseme => model_checks(player).into(),
@@ -225,11 +237,11 @@ impl Bench {
     }
 
     /// The first failed test of decisions.
-    fn test(&self, way: Methodology, player: &str) -> Result<Option<String>, Box<dyn Error>> {
-        if way == Methodology::Aseme {
+    fn test(&self, methodology: Methodology, player: &str) -> Result<Option<String>, Box<dyn Error>> {
+        if methodology == Methodology::Aseme {
             return self.run_scenarios(player);
         }
-        let filter = format!("{}::", way.name());
+        let filter = format!("{}::", methodology.name());
         let output = self.cargo(&["test", "--lib", "--", &filter])?;
         let said = text(&output);
         let failed = said.lines().find_map(|line| line.strip_suffix(" --- FAILED"));
@@ -259,18 +271,18 @@ impl Bench {
         Ok(None)
     }
 
-    /// The sums of the matches of a way, or why one cannot be played.
+    /// The sums of the matches of a methodology, or why one cannot be played.
     fn play(
         &self,
-        way: Methodology,
+        methodology: Methodology,
         seeds: [(u32, u32); 2],
     ) -> Result<Result<Counts, String>, Box<dyn Error>> {
-        let (file, direct) = match way {
+        let (file, direct) = match methodology {
             Methodology::Direct => ("config/evaluation/direct.xml", Some("direct")),
             Methodology::Agents => ("config/evaluation/agents.xml", None),
             Methodology::Aseme => (ASEME_MATCH, None),
         };
-        if way == Methodology::Aseme {
+        if methodology == Methodology::Aseme {
             copy_roles(&self.copy, "config/evaluation/blue")?;
         }
         let program = self.copy.target.join("release/examples/play");

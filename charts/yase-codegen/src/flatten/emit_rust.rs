@@ -149,7 +149,7 @@ impl RustEmitter<'_> {
         let flat = self.flat;
         let host = if flat.start.pieces.is_empty() { "_host" } else { "host" };
         self.line(1, &format!("pub fn start({host}: &mut impl Host) -> State {{"));
-        self.way(&flat.start, 2, ArmEnd::Is { is_last: true });
+        self.path(&flat.start, 2, ArmEnd::Is { is_last: true });
         self.line(1, "}");
     }
 
@@ -162,8 +162,8 @@ impl RustEmitter<'_> {
         self.line(2, "match (*self, event) {");
         let mut has_all = !flat.events.is_empty();
         for (state, paths) in flat.paths.iter().enumerate() {
-            for (event, way) in paths.iter().enumerate() {
-                has_all &= self.arm(state, event, way);
+            for (event, path) in paths.iter().enumerate() {
+                has_all &= self.arm(state, event, path);
             }
         }
         if !has_all {
@@ -183,14 +183,14 @@ impl RustEmitter<'_> {
             }
             _ => {
                 self.line(3, &format!("{head} {{"));
-                self.way(path, 4, ArmEnd::Becomes { from: state, is_last: true });
+                self.path(path, 4, ArmEnd::Becomes { from: state, is_last: true });
                 self.line(3, "}");
             }
         }
         true
     }
 
-    fn way(&mut self, path: &FlatPath, depth: usize, ending: ArmEnd) {
+    fn path(&mut self, path: &FlatPath, depth: usize, ending: ArmEnd) {
         for (index, piece) in path.pieces.iter().enumerate() {
             match piece {
                 FlatOp::Do(action) => {
@@ -200,7 +200,7 @@ impl RustEmitter<'_> {
                     self.line(depth, &format!("if host.{}() {{", self.names.conditions[*condition].clone()));
                     let nothing_follows = index + 1 == path.pieces.len() && ending.is_done_at(path.to);
                     let early = if nothing_follows { ending } else { ending.early() };
-                    self.way(other, depth + 1, early);
+                    self.path(other, depth + 1, early);
                     self.line(depth, "}");
                 }
             }

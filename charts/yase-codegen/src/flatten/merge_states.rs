@@ -35,7 +35,7 @@ impl FlatMachine {
         self.start = with_targets(&self.start, &number);
         self.paths = kept
             .iter()
-            .map(|&state| self.paths[state].iter().map(|way| with_targets(way, &number)).collect())
+            .map(|&state| self.paths[state].iter().map(|path| with_targets(path, &number)).collect())
             .collect();
         self.states = kept.iter().map(|&state| self.states[state].clone()).collect();
         self

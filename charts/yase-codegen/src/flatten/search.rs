@@ -38,7 +38,7 @@ pub(crate) fn search(
         states: Vec::new(),
         steps: 0,
     };
-    let start = search.way(&Machine::new(chart.clone()), &StepCause::Start, &[])?;
+    let start = search.path(&Machine::new(chart.clone()), &StepCause::Start, &[])?;
     let moves = words.events.iter().map(|event| match event {
         FlatEvent::Named(name) => StepCause::Event(name.clone()),
         FlatEvent::Other => StepCause::Event(OTHER_EVENT.to_owned()),
@@ -52,7 +52,7 @@ pub(crate) fn search(
         for event in &moves {
             row.push(match search.states[state].is_over {
                 true => FlatPath { pieces: Vec::new(), to: state },
-                false => search.way(&machine, event, &[])?,
+                false => search.path(&machine, event, &[])?,
             });
         }
         paths.push(row);
@@ -78,7 +78,7 @@ struct FlatSearch<'s> {
 
 impl FlatSearch<'_> {
     /// The operations after the planned conditions have been read.
-    fn way(&mut self, from: &Machine, cause: &StepCause, planned: &[bool]) -> Result<FlatPath, Diagnostic> {
+    fn path(&mut self, from: &Machine, cause: &StepCause, planned: &[bool]) -> Result<FlatPath, Diagnostic> {
         self.steps += 1;
         let most = self.limit.saturating_mul(MAX_STEPS_PER_STATE);
         if self.steps > most {
@@ -95,7 +95,7 @@ impl FlatSearch<'_> {
                 RecordedCall::ActionExecuted(action) => FlatOp::Do(action),
                 RecordedCall::ConditionRead(condition) => {
                     asked.push(true);
-                    let path = self.way(from, cause, &asked)?;
+                    let path = self.path(from, cause, &asked)?;
                     asked.pop();
                     asked.push(false);
                     FlatOp::If(condition, path)

@@ -8,14 +8,14 @@ impl FlatMachine {
     pub(crate) fn without_unused(mut self) -> FlatMachine {
         let mut conditions = Renumbering::new(self.conditions.len());
         let mut actions = Renumbering::new(self.actions.len());
-        for path in self.every_way() {
+        for path in self.all_paths() {
             for_each_piece(path, &mut |piece| match piece {
                 FlatOp::Do(action) => actions.mark_used(*action),
                 FlatOp::If(condition, _) => conditions.mark_used(*condition),
             });
         }
-        for way in self.every_way() {
-            for_each_piece(way, &mut |piece| match piece {
+        for path in self.all_paths() {
+            for_each_piece(path, &mut |piece| match piece {
                 FlatOp::Do(action) => *action = actions.number(*action),
                 FlatOp::If(condition, _) => *condition = conditions.number(*condition),
             });
@@ -25,7 +25,7 @@ impl FlatMachine {
         self
     }
 
-    fn every_way(&mut self) -> impl Iterator<Item = &mut FlatPath> {
+    fn all_paths(&mut self) -> impl Iterator<Item = &mut FlatPath> {
         std::iter::once(&mut self.start).chain(self.paths.iter_mut().flatten())
     }
 }

@@ -214,20 +214,20 @@ fn walk(chart: &CompiledChart, flat: &FlatMachine, events: &[String], seed: u64)
 
 fn follow(flat: &FlatMachine, path: &FlatPath, (seed, step): (u64, usize), lines: &mut Vec<Line>) -> usize {
     let mut actions: Vec<String> = Vec::new();
-    let (mut way, mut index) = (path, 0);
-    while let Some(piece) = way.pieces.get(index) {
+    let (mut taken, mut index) = (path, 0);
+    while let Some(piece) = taken.pieces.get(index) {
         index += 1;
         match piece {
             FlatOp::Do(action) => actions.push(flat.actions[*action].clone()),
             FlatOp::If(condition, other) => {
                 if holds(&flat.conditions[*condition], seed, step, actions.len()) {
-                    (way, index) = (other, 0);
+                    (taken, index) = (other, 0);
                 }
             }
         }
     }
-    lines.push(Line { actions, active: flat.states[way.to].leaves.clone() });
-    way.to
+    lines.push(Line { actions, active: flat.states[taken.to].leaves.clone() });
+    taken.to
 }
 
 /// Two regions, one of which waits for the other, and a history of the second.

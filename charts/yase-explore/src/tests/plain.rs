@@ -55,8 +55,8 @@ fn plain(
                     found.states.len() - 1
                 });
                 if let Some(from) = from {
-                    let ways: &mut StepOutcomes = &mut found.outcomes[from];
-                    ways.insert((label, to));
+                    let indices: &mut StepOutcomes = &mut found.outcomes[from];
+                    indices.insert((label, to));
                 }
             }
         }
@@ -121,19 +121,19 @@ fn steps(machine: &Machine, cause: &StepCause, found: &mut ReferenceExploration)
 fn are_alike(one: &ReferenceExploration, other: &ReferenceExploration) -> bool {
     let shift = one.states.len();
     let states: Vec<_> = one.states.iter().chain(&other.states).collect();
-    let ways: Vec<Vec<(&str, usize)>> = (one.outcomes.iter().map(|ways| (0, ways)))
-        .chain(other.outcomes.iter().map(|ways| (shift, ways)))
-        .map(|(shift, ways)| ways.iter().map(|(label, to)| (label.as_str(), to + shift)).collect())
+    let indices: Vec<Vec<(&str, usize)>> = (one.outcomes.iter().map(|positions| (0, positions)))
+        .chain(other.outcomes.iter().map(|edges| (shift, edges)))
+        .map(|(shift, edges)| edges.iter().map(|(label, to)| (label.as_str(), to + shift)).collect())
         .collect();
     let (mut classes, mut count) = (vec![0; states.len()], 0);
     loop {
         let mut numbers = BTreeMap::new();
         let mut next = Vec::new();
-        for (state, ways) in states.iter().zip(&ways) {
-            let ways: BTreeSet<(&str, usize)> =
-                ways.iter().map(|&(label, to)| (label, classes[to])).collect();
+        for (state, edges) in states.iter().zip(&indices) {
+            let edges: BTreeSet<(&str, usize)> =
+                edges.iter().map(|&(label, to)| (label, classes[to])).collect();
             let (number, shown) = (numbers.len(), format!("{state:?}"));
-            next.push(*numbers.entry((shown, classes[next.len()], ways)).or_insert(number));
+            next.push(*numbers.entry((shown, classes[next.len()], edges)).or_insert(number));
         }
         if numbers.len() == count {
             return next[0] == next[shift];

@@ -174,15 +174,15 @@ impl Flow {
         leads: &[(NodeId, NodeId)],
         layout: &DrawingLayout<'_>,
     ) -> Flow {
-        let places: BTreeMap<NodeId, usize> =
-            children.iter().enumerate().map(|(place, &child)| (child, place)).collect();
-        let place = |node: NodeId| places.get(&node).copied().unwrap_or(0);
+        let numbers: BTreeMap<NodeId, usize> =
+            children.iter().enumerate().map(|(index, &child)| (child, index)).collect();
+        let number = |node: NodeId| numbers.get(&node).copied().unwrap_or(0);
         let drawn = transitions.iter().map(|(_, it)| (it.source, it.target));
         let ends: Vec<(usize, usize)> =
-            drawn.chain(leads.iter().copied()).map(|(from, to)| (place(from), place(to))).collect();
+            drawn.chain(leads.iter().copied()).map(|(from, to)| (number(from), number(to))).collect();
         let (row_of, courses) = ranks(children.len(), &ends);
         let mut rows = vec![Vec::new(); row_of.iter().max().map_or(0, |last| last + 1)];
-        row_of.iter().enumerate().for_each(|(place, &row)| rows[row].push(place));
+        row_of.iter().enumerate().for_each(|(position, &row)| rows[row].push(position));
         let cell = |(&child, row): (&NodeId, usize)| {
             let (size, beside) = (layout.shape(child).size, layout.shape(child).name_width);
             let (left, right) = (size.0 / 2.0, size.0 / 2.0 + beside);
@@ -249,10 +249,10 @@ impl Flow {
     /// Sets the axes: a single child is on the centre line, several are centred about it.
     fn place_columns(&mut self) {
         for row in &self.rows {
-            let width: f64 = row.iter().map(|&place| self.cells[place].left + self.cells[place].right).sum();
+            let width: f64 = row.iter().map(|&index| self.cells[index].left + self.cells[index].right).sum();
             let mut left = -(width + GAP * row.len().saturating_sub(1) as f64) / 2.0;
-            for &place in row {
-                let cell = &mut self.cells[place];
+            for &cell in row {
+                let cell = &mut self.cells[cell];
                 cell.axis = if row.len() == 1 { 0.0 } else { left + cell.left };
                 left += cell.left + cell.right + GAP;
                 self.left = self.left.min(cell.axis - cell.left);
@@ -265,7 +265,7 @@ impl Flow {
         let mut top = 0.0;
         for row in &self.rows {
             let highest = |of: fn(&FlowCell) -> f64| {
-                row.iter().map(|&place| of(&self.cells[place])).fold(0.0, f64::max)
+                row.iter().map(|&index| of(&self.cells[index])).fold(0.0, f64::max)
             };
             let (above, height) =
                 (highest(|cell| cell.above), highest(|cell| cell.height.max(cell.size.1 + cell.below)));
@@ -273,7 +273,7 @@ impl Flow {
                 top += above + ARROW_HEAD_SPACE + if above > 0.0 { LABEL_GAP } else { 0.0 };
             }
             self.height = top + height;
-            row.iter().for_each(|&place| self.cells[place].top = top);
+            row.iter().for_each(|&position| self.cells[position].top = top);
             top = self.height + TURN_DISTANCE;
             self.turns.push(top);
         }

@@ -86,11 +86,11 @@ impl Grid {
     pub(crate) fn new(lines: GridLines, page: Rectangle) -> Grid {
         let GridLines { columns, rows } = lines;
         let (columns, rows) = (sorted(columns, page.left, page.right), sorted(rows, page.top, page.bottom));
-        let places = columns.len().saturating_mul(rows.len());
-        let (columns, rows, places) =
-            if places > MAX_PLACES { (vec![], vec![], 0) } else { (columns, rows, places) };
-        let (blocked, letters) = (vec![false; places], vec![false; places]);
-        Grid { columns, rows, blocked, across: vec![0; places], down: vec![0; places], letters }
+        let index = columns.len().saturating_mul(rows.len());
+        let (columns, rows, position) =
+            if index > MAX_PLACES { (vec![], vec![], 0) } else { (columns, rows, index) };
+        let (blocked, letters) = (vec![false; position], vec![false; position]);
+        Grid { columns, rows, blocked, across: vec![0; position], down: vec![0; position], letters }
     }
 
     /// The number of grid points.
@@ -98,48 +98,48 @@ impl Grid {
         self.blocked.len()
     }
 
-    pub(crate) fn point(&self, place: usize) -> Point {
+    pub(crate) fn point(&self, index: usize) -> Point {
         let width = self.columns.len();
-        (self.columns[place % width], self.rows[place / width])
+        (self.columns[index % width], self.rows[index / width])
     }
 
     /// The grid point at a position, if lines cross there.
-    pub(crate) fn place(&self, (x, y): Point) -> Option<usize> {
+    pub(crate) fn crossing_at(&self, (x, y): Point) -> Option<usize> {
         let column = self.columns.binary_search_by(|line| line.total_cmp(&x)).ok()?;
         let row = self.rows.binary_search_by(|line| line.total_cmp(&y)).ok()?;
         Some(row * self.columns.len() + column)
     }
 
-    pub(crate) fn is_free(&self, place: usize) -> bool {
-        !self.blocked[place]
+    pub(crate) fn is_free(&self, index: usize) -> bool {
+        !self.blocked[index]
     }
 
     /// The next grid point in a direction and the cost to reach it; `None` if it is blocked.
-    pub(crate) fn step(&self, place: usize, direction: Direction) -> Option<(usize, u64)> {
+    pub(crate) fn step(&self, index: usize, direction: Direction) -> Option<(usize, u64)> {
         let (width, height) = (self.columns.len(), self.rows.len());
-        let (column, row) = (place % width, place / width);
+        let (column, row) = (index % width, index / width);
         let next = match direction {
-            Direction::Down if row + 1 < height => place + width,
-            Direction::Right if column + 1 < width => place + 1,
-            Direction::Left if column > 0 => place - 1,
-            Direction::Up if row > 0 => place - width,
+            Direction::Down if row + 1 < height => index + width,
+            Direction::Right if column + 1 < width => index + 1,
+            Direction::Left if column > 0 => index - 1,
+            Direction::Up if row > 0 => index - width,
             _ => return None,
         };
         if self.blocked[next] {
             return None;
         }
-        let ((x, y), (next_x, next_y)) = (self.point(place), self.point(next));
+        let ((x, y), (next_x, next_y)) = (self.point(index), self.point(next));
         let length = ((next_x - x).abs() + (next_y - y).abs()) as u64;
         Some((next, length + self.burden_of(next, direction)))
     }
 
     /// Cost of a grid point for a line in a direction.
-    pub(crate) fn burden_of(&self, place: usize, direction: Direction) -> u64 {
+    pub(crate) fn burden_of(&self, index: usize, direction: Direction) -> u64 {
         let along = match direction {
-            Direction::Down | Direction::Up => self.down[place],
-            Direction::Right | Direction::Left => self.across[place],
+            Direction::Down | Direction::Up => self.down[index],
+            Direction::Right | Direction::Left => self.across[index],
         };
-        let letters = if self.letters[place] { TEXT_COST } else { 0 };
+        let letters = if self.letters[index] { TEXT_COST } else { 0 };
         OVERLAP_COST * u64::from(along) + letters
     }
 
@@ -150,12 +150,12 @@ impl Grid {
 
     /// Blocks the grid points in an area and within a distance of it.
     pub(crate) fn block(&mut self, area: &Rectangle, distance: f64) {
-        self.within(area, distance).for_each(|place| self.blocked[place] = true);
+        self.within(area, distance).for_each(|index| self.blocked[index] = true);
     }
 
     /// Records that text covers an area.
     pub(crate) fn burden(&mut self, area: &Rectangle) {
-        self.within(area, 1.0).for_each(|place| self.letters[place] = true);
+        self.within(area, 1.0).for_each(|index| self.letters[index] = true);
     }
 
     /// Records a line between two points.
@@ -163,7 +163,7 @@ impl Grid {
         let area = Rectangle::between(from, to);
         let lines = if from.1 == to.1 { &mut self.across } else { &mut self.down };
         let mut taken = std::mem::take(lines);
-        self.within(&area, MERGE_DISTANCE).for_each(|place| taken[place] = taken[place].saturating_add(1));
+        self.within(&area, MERGE_DISTANCE).for_each(|index| taken[index] = taken[index].saturating_add(1));
         if from.1 == to.1 { self.across = taken } else { self.down = taken }
     }
 

@@ -39,11 +39,11 @@ pub(crate) fn across_borders(chart: &Statechart, layout: &mut DrawingLayout) {
         open.into_iter().partition(|&(id, _)| !placed::bends(chart, id).is_empty());
     for (id, transition) in bent.into_iter().chain(others) {
         let points = match placed::bends(chart, id) {
-            [] => router.way(chart, transition),
+            [] => router.cheapest_path(chart, transition),
             bends => router.around(chart, transition, bends, layout),
         };
         let label = Label::of(id, transition, layout.marks);
-        let label_at = router.label_place(&points, label.size());
+        let label_at = router.label_centre(&points, label.size());
         let arrow = Arrow { frame: Statechart::ROOT, points, label, label_at };
         router.occupy(&arrow);
         layout.arrows.push(arrow);
@@ -87,8 +87,8 @@ impl Router {
         let ends: Vec<Rectangle> = ends.collect();
         let mut grid_lines = GridLines::beside(&around, &ends, page, CLEARANCE);
         for end in &ends {
-            grid_lines.columns.extend(places_along(end.left, end.right));
-            grid_lines.rows.extend(places_along(end.top, end.bottom));
+            grid_lines.columns.extend(ports_along(end.left, end.right));
+            grid_lines.rows.extend(ports_along(end.top, end.bottom));
         }
         let grid = Grid::new(grid_lines, page);
         let mut router = Router { boxes, names, bars, letters, lines: Vec::new(), heads, page, grid };
@@ -127,7 +127,7 @@ impl Router {
     }
 
     /// The cheapest path, or a straight line if there is none.
-    fn way(&mut self, chart: &Statechart, transition: &Transition) -> Vec<Point> {
+    fn cheapest_path(&mut self, chart: &Statechart, transition: &Transition) -> Vec<Point> {
         let (source, target) = (transition.source, transition.target);
         self.block(chart, source, target);
         let starts = self.ports(source, holds(chart, source, target));
@@ -166,20 +166,20 @@ impl Router {
         let area = self.boxes[id.0 as usize];
         let distance = if inward { -CLEARANCE } else { CLEARANCE };
         let mut ports = Vec::new();
-        for x in places_along(area.left, area.right) {
+        for x in ports_along(area.left, area.right) {
             ports.push((Direction::Down, (x, area.bottom), (0.0, distance)));
             ports.push((Direction::Up, (x, area.top), (0.0, -distance)));
         }
-        for y in places_along(area.top, area.bottom).filter(|_| !self.bars[id.0 as usize]) {
+        for y in ports_along(area.top, area.bottom).filter(|_| !self.bars[id.0 as usize]) {
             ports.push((Direction::Right, (area.right, y), (distance, 0.0)));
             ports.push((Direction::Left, (area.left, y), (-distance, 0.0)));
         }
         let port = |(side, at, (right, down)): (Direction, Point, Point)| {
             let side = if inward { side.reversed() } else { side };
-            let place = self.grid.place((at.0 + right, at.1 + down))?;
+            let index = self.grid.crossing_at((at.0 + right, at.1 + down))?;
             let (x, y) = area.centre();
             let cost = if at.0 == x || at.1 == y { 0 } else { OFF_CENTRE_COST };
-            Some(Port { at, grid_point: place, side, cost })
+            Some(Port { at, grid_point: index, side, cost })
         };
         ports.into_iter().filter_map(port).collect()
     }
@@ -201,16 +201,16 @@ impl Router {
             if best.is_some_and(|(least, ..)| least <= cost) {
                 break;
             }
-            let (place, heading) = (state / 4, Direction::ALL[state % 4]);
-            for goal in goals.iter().filter(|goal| goal.grid_point == place) {
+            let (index, heading) = (state / 4, Direction::ALL[state % 4]);
+            for goal in goals.iter().filter(|goal| goal.grid_point == index) {
                 let turn = corner(heading, goal.side.reversed());
-                let total = cost + goal.cost + turn + self.grid.burden_of(place, goal.side);
+                let total = cost + goal.cost + turn + self.grid.burden_of(index, goal.side);
                 if best.is_none_or(|(least, ..)| total < least) {
                     best = Some((total, state, goal));
                 }
             }
             for next in Direction::ALL {
-                let Some((neighbour, length)) = self.grid.step(place, next) else { continue };
+                let Some((neighbour, length)) = self.grid.step(index, next) else { continue };
                 if next == heading.reversed() {
                     continue;
                 }
@@ -245,7 +245,7 @@ impl Router {
 
     /// The centre of a label: at the position on the line with the least overlap, the longest
     /// segment first.
-    fn label_place(&self, points: &[Point], size: Point) -> Point {
+    fn label_centre(&self, points: &[Point], size: Point) -> Point {
         let mut parts: Vec<(Point, Point)> = points.windows(2).map(|ends| (ends[0], ends[1])).collect();
         let length = |(from, to): &(Point, Point)| (to.0 - from.0).abs() + (to.1 - from.1).abs();
         parts.sort_by(|a, b| length(b).total_cmp(&length(a)));
@@ -254,14 +254,14 @@ impl Router {
             for part in [0.5, 0.35, 0.65, 0.2, 0.8, 0.05, 0.95] {
                 let on_line = (from.0 + (to.0 - from.0) * part, from.1 + (to.1 - from.1) * part);
                 for aside in [0.0, 0.5, -0.5] {
-                    let place = (on_line.0 + aside * (size.0 + 4.0), on_line.1);
-                    let label = Rectangle::around(place, size);
+                    let centre = (on_line.0 + aside * (size.0 + 4.0), on_line.1);
+                    let label = Rectangle::around(centre, size);
                     let covered: f64 = self.letters.iter().map(|letters| letters.shared(&label)).sum();
                     let crossed: f64 = self.lines.iter().map(|line| line.shared(&label)).sum();
                     let outside = label.area() - label.shared(&self.page);
                     let cost = covered + 2.0 * outside + crossed;
                     if cost + 0.01 < best.0 {
-                        best = (cost, place);
+                        best = (cost, centre);
                     }
                 }
             }
@@ -282,7 +282,7 @@ struct Port {
 }
 
 /// The middle of a side, and its quarters.
-fn places_along(from: f64, to: f64) -> impl Iterator<Item = f64> {
+fn ports_along(from: f64, to: f64) -> impl Iterator<Item = f64> {
     let parts: &[f64] = if to - from < MIN_SPLIT_LENGTH { &[0.5] } else { &[0.5, 0.25, 0.75] };
     parts.iter().map(move |part| if *part == 0.5 { (from + to) / 2.0 } else { from + (to - from) * part })
 }

@@ -107,15 +107,15 @@ impl XStateWriter<'_> {
         if let Some(transition) = transitions.first() {
             self.writer.value("target", &self.targets(transition));
         }
-        for (index, way) in transitions.iter().enumerate() {
-            let Some(first) = way.segments.first() else { continue };
-            for connector in way.via(self.chart) {
+        for (index, path) in transitions.iter().enumerate() {
+            let Some(first) = path.segments.first() else { continue };
+            for connector in path.via(self.chart) {
                 self.lost.kind(connector, "nothing, because it is on the path from a history to its default");
             }
-            let says_more = way.segments.iter().any(|segment| !segment.expression.is_empty());
+            let says_more = path.segments.iter().any(|segment| !segment.expression.is_empty());
             if index > 0 {
                 self.lost.report_omitted(format!("{} is a second default", self.lost.arrow(first)));
-            } else if says_more || !way.via(self.chart).is_empty() {
+            } else if says_more || !path.via(self.chart).is_empty() {
                 self.lost.of_transition(first, "more than the target");
             }
         }
@@ -166,10 +166,10 @@ impl XStateWriter<'_> {
         let children = self.chart.children(id);
         let merged = children.iter().copied().find(|child| self.merged[child.0 as usize]);
         let transition = merged.and_then(|start| self.transitions[start.0 as usize].first());
-        if let Some(way) = transition {
-            let target: JsonValue = way.targets.first().map_or("", |&it| self.ids.of_node(it)).into();
+        if let Some(path) = transition {
+            let target: JsonValue = path.targets.first().map_or("", |&it| self.ids.of_node(it)).into();
             let actions: Vec<JsonValue> =
-                way.segments.iter().flat_map(|it| actions(&it.expression.actions)).collect();
+                path.segments.iter().flat_map(|it| actions(&it.expression.actions)).collect();
             let initial = match actions.is_empty() {
                 true => target,
                 false => JsonValue::Object(vec![
@@ -232,23 +232,28 @@ impl XStateWriter<'_> {
         table
     }
 
-    fn transition(&self, id: NodeId, way: &ResolvedTransition<'_>, guard: Option<String>) -> JsonValue {
+    fn transition(
+        &self,
+        id: NodeId,
+        transition: &ResolvedTransition<'_>,
+        guard: Option<String>,
+    ) -> JsonValue {
         let mut entries: JsonMembers = Vec::new();
-        let internal = way.segments.first().is_some_and(|first| first.internal);
-        if !(internal && way.targets == [id]) {
-            entries.push(("target".into(), self.targets(way)));
+        let internal = transition.segments.first().is_some_and(|first| first.internal);
+        if !(internal && transition.targets == [id]) {
+            entries.push(("target".into(), self.targets(transition)));
         }
         entries.extend(guard.map(|guard| ("guard".into(), guard.into())));
         let actions: Vec<JsonValue> =
-            way.segments.iter().flat_map(|it| actions(&it.expression.actions)).collect();
+            transition.segments.iter().flat_map(|it| actions(&it.expression.actions)).collect();
         if !actions.is_empty() {
             entries.push(("actions".into(), JsonValue::List(actions)));
         }
         let stays = |&target: &NodeId| target == id || self.chart.ancestors(target).any(|it| it == id);
-        if !internal && way.joined.is_empty() && way.targets.iter().any(stays) {
+        if !internal && transition.joined.is_empty() && transition.targets.iter().any(stays) {
             entries.push(("reenter".into(), JsonValue::Bool(true)));
         }
-        let meta = self.meta_of_way(way);
+        let meta = self.path_meta(transition);
         if !meta.is_empty() {
             entries.push(("meta".into(), JsonValue::Object(meta)));
         }
@@ -256,7 +261,7 @@ impl XStateWriter<'_> {
     }
 
     /// The connectors of a path, and the properties of its segments besides their expressions.
-    fn meta_of_way(&self, transition: &ResolvedTransition<'_>) -> JsonMembers {
+    fn path_meta(&self, transition: &ResolvedTransition<'_>) -> JsonMembers {
         let mut meta = JsonMembers::new();
         let via: Vec<JsonValue> =
             transition.via(self.chart).into_iter().map(|id| self.connector(id)).collect();

@@ -9,11 +9,11 @@ use yase_export::{Exported, to_dot, to_mermaid, to_plantuml, to_xstate};
 type Export = fn(&Statechart) -> Exported;
 
 pub(crate) fn input(name: &str) -> Statechart {
-    let text = std::fs::read_to_string(place(name, "chart")).unwrap();
+    let text = std::fs::read_to_string(golden_file(name, "chart")).unwrap();
     super::text::chart(name, &text)
 }
 
-fn place(name: &str, ending: &str) -> PathBuf {
+fn golden_file(name: &str, ending: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("tests/export/charts/{name}.{ending}"))
 }
 
@@ -33,7 +33,7 @@ fn check(name: &str) {
 
 #[track_caller]
 fn compare(name: &str, ending: &str, actual: &str) {
-    let golden = place(name, ending);
+    let golden = golden_file(name, ending);
     if std::env::var_os("MONAS_BLESS").is_some() {
         std::fs::write(&golden, actual).unwrap();
     }

@@ -76,7 +76,7 @@ impl Cursor<'_> {
     }
 
     fn push(&self, start: usize, kind: ActionKind, actions: &mut Vec<Action>) {
-        actions.push(Action { kind, position: self.place(self.since(start)) });
+        actions.push(Action { kind, position: self.position(self.since(start)) });
     }
 
     /// `StartTimeout(v, 100ms)`.
@@ -126,7 +126,7 @@ impl Cursor<'_> {
             }
             segments.push(self.name()?);
         }
-        let timer = Path { segments, position: self.place(self.since(name_start)) };
+        let timer = Path { segments, position: self.position(self.since(name_start)) };
         let written = self.advance().span;
         let Some(delay) = decimal(self.source(written), 6) else {
             return self.refuse_delay(written);
@@ -243,11 +243,11 @@ fn delay(text: &str) -> Option<Duration> {
 }
 
 /// A decimal number in units of 10^`places` nanoseconds; exact, or `None`.
-fn decimal(number: &str, places: usize) -> Option<Duration> {
+fn decimal(number: &str, index: usize) -> Option<Duration> {
     let (whole, fraction) = number.split_once('.').unwrap_or((number, ""));
     let only_digits = |text: &str| text.bytes().all(|byte| byte.is_ascii_digit());
-    if whole.is_empty() || fraction.len() > places || !only_digits(whole) || !only_digits(fraction) {
+    if whole.is_empty() || fraction.len() > index || !only_digits(whole) || !only_digits(fraction) {
         return None;
     }
-    format!("{whole}{fraction:0<places$}").parse().ok().map(Duration::from_nanos)
+    format!("{whole}{fraction:0<index$}").parse().ok().map(Duration::from_nanos)
 }

@@ -222,6 +222,6 @@ impl Cursor<'_> {
 
     /// An expression from `start` to the previous token.
     pub(crate) fn expression(&self, start: usize, kind: ExpressionKind) -> Expression {
-        Expression { kind, position: self.place(self.since(start)) }
+        Expression { kind, position: self.position(self.since(start)) }
     }
 }

@@ -113,7 +113,7 @@ impl<'t> Cursor<'t> {
     }
 
     /// The position of a span in the larger text.
-    pub(crate) fn place(&self, span: Span) -> TextPosition {
+    pub(crate) fn position(&self, span: Span) -> TextPosition {
         TextPosition(span.shifted(self.offset))
     }
 

@@ -23,7 +23,7 @@ impl Cursor<'_> {
             segments.push(self.name()?);
             self.accept_empty_parentheses();
         }
-        Ok(Path { segments, position: self.place(self.since(start)) })
+        Ok(Path { segments, position: self.position(self.since(start)) })
     }
 
     /// One segment of a path: a word, a function's name with its crate (`soccer::near`), or
@@ -49,7 +49,7 @@ impl Cursor<'_> {
         }
         let span = self.since(first.start);
         let text = self.source(span).split_whitespace().collect();
-        Ok(Name { text, position: self.place(span) })
+        Ok(Name { text, position: self.position(span) })
     }
 
     fn quoted_name(&mut self, span: Span) -> Parsed<Name> {
@@ -61,7 +61,7 @@ impl Cursor<'_> {
                 Diagnostic::error("E0104", span, "there is no name in the backquotes").with_hint(hint),
             );
         }
-        Ok(Name { text, position: self.place(span) })
+        Ok(Name { text, position: self.position(span) })
     }
 
     fn accept_empty_parentheses(&mut self) {

@@ -31,7 +31,7 @@ impl Cursor<'_> {
         let open = self.advance().span;
         let inner = self.condition()?;
         self.expect_close_parenthesis(open)?;
-        Ok(Expression { position: self.place(self.since(open.start)), ..inner })
+        Ok(Expression { position: self.position(self.since(open.start)), ..inner })
     }
 
     fn number(&mut self) -> Parsed<Expression> {
@@ -147,7 +147,7 @@ impl Cursor<'_> {
                     .with_hint(hint),
             );
         }
-        let state = Name { text, position: self.place(inside) };
+        let state = Name { text, position: self.position(inside) };
         Ok(self.expression(start, ExpressionKind::In(state)))
     }
 

@@ -194,13 +194,13 @@ impl Maker<'_, '_> {
             return self.fork_regions(point, around);
         }
         let inside = self.inside(around, |kind| is_state(kind) || is_history(kind) || kind == NodeKind::End);
-        self.two_ways(point, &inside);
+        self.branches(point, &inside);
     }
 
     fn out_of_exit(&mut self, point: NodeId) {
         let around = self.parent(self.parent(point));
         let outside = self.children(around, |kind| is_state(kind) || kind == NodeKind::End);
-        self.two_ways(point, &outside);
+        self.branches(point, &outside);
         let owner = self.parent(point);
         if self.kind(owner) == NodeKind::And && self.choices.percent(60) {
             self.regions_to_exit(owner, point);
@@ -225,7 +225,7 @@ impl Maker<'_, '_> {
         }
     }
 
-    fn two_ways(&mut self, source: NodeId, targets: &[NodeId]) {
+    fn branches(&mut self, source: NodeId, targets: &[NodeId]) {
         if self.choices.percent(40) {
             let target = self.choices.pick(targets);
             let text = format!("{} {}", self.guard(), self.slash_actions(30));

@@ -11,12 +11,12 @@ use super::{Deadline, Stepper, topic};
 use crate::test_host::TestHost;
 
 impl Stepper<'_> {
-    pub(crate) fn act(&mut self, actions: &[Action], region: ScopeId, place: &str, host: &mut TestHost) {
+    pub(crate) fn act(&mut self, actions: &[Action], region: ScopeId, owner: &str, host: &mut TestHost) {
         if actions.is_empty() {
             return;
         }
         let texts: Vec<String> = actions.iter().map(ToString::to_string).collect();
-        self.line.effects.push(format!("{} ({place})", texts.join(", ")));
+        self.line.effects.push(format!("{} ({owner})", texts.join(", ")));
         for action in actions {
             if let Err(error) = self.perform(action, region, host) {
                 self.raise(self.error_event("error.action"));

@@ -210,8 +210,8 @@ impl Stepper<'_> {
     pub(crate) fn effects(&mut self, segments: &[TransitionId], region: ScopeId, host: &mut TestHost) {
         for &id in segments {
             let transition = self.transition(id);
-            let place = format!("{} -> {}", self.name(transition.source), self.name(transition.target));
-            self.act(&transition.expression.actions, region, &place, host);
+            let segment = format!("{} -> {}", self.name(transition.source), self.name(transition.target));
+            self.act(&transition.expression.actions, region, &segment, host);
         }
     }
 

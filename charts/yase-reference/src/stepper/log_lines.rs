@@ -98,7 +98,7 @@ impl Stepper<'_> {
         match failure {
             Failure::NoBranch(choice) => {
                 let names = StateNames::of(self.chart);
-                format!("no way out of CHOICE `{}` is open", names.name(*choice))
+                format!("no outgoing transition of CHOICE `{}` is enabled", names.name(*choice))
             }
             Failure::Endless => "endless".to_owned(),
         }

@@ -28,8 +28,8 @@ impl Tree {
     pub(crate) fn new(chart: &Statechart, order: SegmentOrder) -> Tree {
         let document = document(chart);
         let mut position = vec![0; document.len()];
-        for (place, node) in document.iter().enumerate() {
-            position[node.0 as usize] = place;
+        for (index, node) in document.iter().enumerate() {
+            position[node.0 as usize] = index;
         }
         let is_inside =
             |outer| chart.nodes().map(|(id, _)| chart.ancestors(id).any(|it| it == outer)).collect();

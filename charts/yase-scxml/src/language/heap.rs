@@ -39,12 +39,12 @@ pub(crate) struct PropertyMap {
 
 impl PropertyMap {
     pub(crate) fn get(&self, name: &str) -> Option<&ScriptValue> {
-        self.indices.get(name).map(|&place| &self.members[place].1)
+        self.indices.get(name).map(|&index| &self.members[index].1)
     }
 
     pub(crate) fn set(&mut self, name: &str, value: ScriptValue) {
         match self.indices.get(name) {
-            Some(&place) => self.members[place].1 = value,
+            Some(&index) => self.members[index].1 = value,
             None => {
                 let name: Arc<str> = name.into();
                 self.indices.insert(name.clone(), self.members.len());

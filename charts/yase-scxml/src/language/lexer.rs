@@ -183,14 +183,14 @@ impl Lexer<'_> {
         self.at += 1;
         let mut value = String::new();
         loop {
-            let place = self.at;
+            let index = self.at;
             let Some(character) = self.peek() else {
-                return Err(self.malformed(start, place, "the text is not closed"));
+                return Err(self.malformed(start, index, "the text is not closed"));
             };
             self.at += character.len_utf8();
             match character {
-                '\n' | '\r' => return Err(self.malformed(start, place, "the text is not closed")),
-                '\\' => self.escape(place, &mut value)?,
+                '\n' | '\r' => return Err(self.malformed(start, index, "the text is not closed")),
+                '\\' => self.escape(index, &mut value)?,
                 end if end == quote => break,
                 other => value.push(other),
             }

@@ -436,7 +436,7 @@ impl<'a> Parser<'a> {
         let location = match expression {
             ScriptExpression::Variable(variable) => Some(Location { variable, path: Vec::new() }),
             ScriptExpression::Access(base, path) => match *base {
-                ScriptExpression::Variable(variable) if path.iter().all(Access::is_place) => {
+                ScriptExpression::Variable(variable) if path.iter().all(Access::is_assignable) => {
                     Some(Location { variable, path })
                 }
                 _ => None,
@@ -453,7 +453,7 @@ impl<'a> Parser<'a> {
 }
 
 impl Access {
-    fn is_place(&self) -> bool {
+    fn is_assignable(&self) -> bool {
         matches!(self, Access::Member(_) | Access::Index(_))
     }
 }

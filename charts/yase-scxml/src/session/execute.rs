@@ -123,7 +123,7 @@ impl ContentExecutor<'_> {
     /// Raises an event after the contents are executed.
     pub(crate) fn raise(&mut self, event: ScxmlEvent) -> Result<(), EvalError> {
         if self.exchange.is_full() || self.state.raised.len() >= MAX_RAISED {
-            let message = "more events are on their way than a session may have";
+            let message = "more events are in transit than a session may have";
             self.state.fatal.get_or_insert(message.into());
             return Err(EvalError::new(message));
         }

@@ -108,8 +108,8 @@ impl PreparedDocument {
         let chart = self.chart.clone();
         for entry in chart.scripts() {
             let index = entry.id.0 as usize;
-            for place in entry.locations {
-                match place {
+            for location in entry.locations {
+                match location {
                     ScriptLocation::Guard(_) => {
                         self.conditions[index] = Some(CompiledText::expression(entry.text))
                     }
@@ -160,8 +160,8 @@ fn with_tasks(document: &Document) -> Statechart {
     }
     for end in ends_with_data(document) {
         let node = chart.node_mut(end);
-        let place = if node.parent == Some(Statechart::ROOT) { &mut node.exit } else { &mut node.entry };
-        place.push(SessionTask::Done(end).action());
+        let actions = if node.parent == Some(Statechart::ROOT) { &mut node.exit } else { &mut node.entry };
+        actions.push(SessionTask::Done(end).action());
     }
     chart
 }

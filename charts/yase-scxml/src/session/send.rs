@@ -76,7 +76,7 @@ impl ContentExecutor<'_> {
             return Ok(self.raise(event)?);
         }
         if self.exchange.is_full() {
-            let message = "more events are on their way than a session may have";
+            let message = "more events are in transit than a session may have";
             self.state.fatal.get_or_insert(message.into());
             return Err(EvalError::new(message).into());
         }
@@ -103,10 +103,10 @@ fn address(kind: Option<String>, target: Option<String>) -> Result<SendTarget, E
         Some(_) => return Ok(SendTarget::Elsewhere { kind: kind.unwrap_or_default(), target }),
     }
     let Some(target) = target else { return Ok(SendTarget::Own) };
-    let Some(place) = target.strip_prefix("#_") else {
+    let Some(location) = target.strip_prefix("#_") else {
         return Err(EvalError::new(format!("`{target}` is not a target")));
     };
-    Ok(match place {
+    Ok(match location {
         "internal" => SendTarget::Internal,
         "parent" => SendTarget::Parent,
         other => match other.strip_prefix("scxml_") {

@@ -219,12 +219,12 @@ fn states_become_nodes() {
     let start = chart.children(chart.find("or").unwrap())[0];
     assert_eq!(chart.node(start).kind, NodeKind::Start);
     let transitions: Vec<_> =
-        chart.transitions().map(|(_, way)| way).filter(|way| way.source == start).collect();
+        chart.transitions().map(|(_, transition)| transition).filter(|it| it.source == start).collect();
     let ActionKind::Script(text) = &transitions[0].expression.actions[0].kind else { panic!("no script") };
     assert_eq!(text, "<log label=\"l\"/>");
-    let internal = chart.transitions().filter(|(_, way)| way.internal);
+    let internal = chart.transitions().filter(|(_, it)| it.internal);
     assert_eq!(internal.count(), 2);
-    assert_eq!(chart.transitions().filter(|(_, way)| way.source == Statechart::ROOT).count(), 0);
+    assert_eq!(chart.transitions().filter(|(_, it)| it.source == Statechart::ROOT).count(), 0);
 }
 
 #[test]

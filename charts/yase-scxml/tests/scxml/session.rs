@@ -341,7 +341,7 @@ fn a_livelock_is_stopped() {
     let flooding = fails("<datamodel><data id='a' expr='[1,2,3,4,5,6,7,8,9,10]'/></datamodel><state id='s'><onentry>
         <foreach array='a' item='b'><foreach array='a' item='c'><foreach array='a' item='d'><foreach array='a' item='e'><foreach array='a' item='f'>
         <send event='e' delay='1s'/></foreach></foreach></foreach></foreach></foreach></onentry></state>");
-    assert!(flooding.to_string().contains("events are on their way"), "{flooding}");
+    assert!(flooding.to_string().contains("events are in transit"), "{flooding}");
 }
 
 #[test]

@@ -84,7 +84,7 @@ impl Statechart {
 /// The scope of each node, and the scopes in document order.
 fn regions(chart: &Statechart, layout: &NodeOrder) -> (Vec<ScopeId>, Vec<Scope>) {
     let mut nodes: Vec<NodeId> = chart.nodes().map(|(id, _)| id).collect();
-    nodes.sort_by_key(|&node| layout.rank(layout.place_of(node)));
+    nodes.sort_by_key(|&node| layout.rank(layout.index_of(node)));
     let mut region_of = vec![ScopeId::ROOT; nodes.len()];
     let mut regions = vec![Scope { root: layout.root(), parent: None, timers: 0 }];
     for node in nodes {
@@ -96,7 +96,7 @@ fn regions(chart: &Statechart, layout: &NodeOrder) -> (Vec<ScopeId>, Vec<Scope>)
             region_of[node.0 as usize] = ScopeId(regions.len() as u32);
         }
         if is_region || has_own_blackboard(chart, node) {
-            regions.push(Scope { root: layout.place_of(node), parent: Some(around), timers: 0 });
+            regions.push(Scope { root: layout.index_of(node), parent: Some(around), timers: 0 });
         }
     }
     (region_of, regions)
@@ -194,7 +194,7 @@ impl ChartCompiler<'_> {
         let timers = self.timers(&mut regions, &states, &triggers);
         let joins = self.joins(&paths.joins);
         let activities: Box<[NodeIndex]> =
-            self.layout.places().filter(|place| states[place.index()].activity.is_some()).collect();
+            self.layout.indices().filter(|node| states[node.index()].activity.is_some()).collect();
         Ok(CompiledChart {
             selection_table: selection_table::entries(
                 &self.layout,
@@ -206,7 +206,7 @@ impl ChartCompiler<'_> {
             node_sets: self.node_sets(&states),
             reads: self.reads(&triggers),
             sources: self.sources(&states, &triggers),
-            script_places: scripts::places(self.chart, &self.scripts),
+            script_places: scripts::script_locations(self.chart, &self.scripts),
             max_activities: max_activities(&states),
             selection_order: selection_order::order(&self.layout, &joins, &self.semantics),
             joins,
@@ -254,28 +254,28 @@ impl ChartCompiler<'_> {
     fn history(&mut self, late: &DynamicBranches) -> HistoryNode {
         let node = self.chart.node(late.node);
         HistoryNode {
-            node: self.layout.place_of(late.node),
-            owner: self.layout.place_of(node.parent.unwrap_or(Statechart::ROOT)),
+            node: self.layout.index_of(late.node),
+            owner: self.layout.index_of(node.parent.unwrap_or(Statechart::ROOT)),
             is_deep: node.kind == NodeKind::DeepHistory,
             branches: self.tree(&late.paths, false),
         }
     }
 
-    fn joins(&self, ways: &[compound_transitions::JoinSources]) -> Box<[JoinNode]> {
+    fn joins(&self, groups: &[compound_transitions::JoinSources]) -> Box<[JoinNode]> {
         let mut first = 0;
-        let places = |nodes: &[NodeId]| nodes.iter().map(|&node| self.layout.place_of(node)).collect();
+        let indices = |nodes: &[NodeId]| nodes.iter().map(|&node| self.layout.index_of(node)).collect();
         let join = |join: &compound_transitions::JoinSources| {
-            let regions: Box<[NodeIndex]> = places(&join.regions);
+            let regions: Box<[NodeIndex]> = indices(&join.regions);
             let start = first;
             first += regions.len();
             JoinNode {
-                around: self.layout.place_of(join.around),
+                around: self.layout.index_of(join.around),
                 first: start,
-                sources: places(&join.sources),
+                sources: indices(&join.sources),
                 regions,
             }
         };
-        ways.iter().map(join).collect()
+        groups.iter().map(join).collect()
     }
 
     /// The events raised by failures.
@@ -324,28 +324,28 @@ impl ChartCompiler<'_> {
     /// The nodes by index, with the paths out of each as branches.
     fn states(&mut self, paths: &[Vec<CompoundPath>], regions: &[Scope]) -> Vec<CompiledNode> {
         let mut activities = 0;
-        let places: Vec<NodeIndex> = self.layout.places().collect();
-        let mut states = Vec::with_capacity(places.len());
-        for place in places {
-            let mut state = self.state(place);
-            if self.chart.node(self.layout.node(place)).activity.is_some() {
+        let nodes: Vec<NodeIndex> = self.layout.indices().collect();
+        let mut states = Vec::with_capacity(nodes.len());
+        for node in nodes {
+            let mut state = self.state(node);
+            if self.chart.node(self.layout.node(node)).activity.is_some() {
                 state.activity = Some(activities);
                 activities += 1;
             }
-            if has_own_blackboard(self.chart, self.layout.node(place)) {
-                let own = regions.iter().position(|scope| scope.root == place);
+            if has_own_blackboard(self.chart, self.layout.node(node)) {
+                let own = regions.iter().position(|scope| scope.root == node);
                 state.activity_region = own.map_or(state.region, |index| ScopeId(index as u32));
             }
-            let ways = &paths[self.layout.node(place).0 as usize];
-            state.eventless = self.tree(ways, true);
-            state.triggered = self.tree(ways, false);
+            let branches = &paths[self.layout.node(node).0 as usize];
+            state.eventless = self.tree(branches, true);
+            state.triggered = self.tree(branches, false);
             states.push(state);
         }
         states
     }
 
-    fn state(&mut self, place: NodeIndex) -> CompiledNode {
-        let id = self.layout.node(place);
+    fn state(&mut self, index: NodeIndex) -> CompiledNode {
+        let id = self.layout.node(index);
         let (chart, region) = (self.chart, self.region_of[id.0 as usize]);
         let node = chart.node(id);
         let entry = |names: &BriefNames<'_>| format!("entry of `{}`", names.name(id));
@@ -361,8 +361,8 @@ impl ChartCompiler<'_> {
             is_region: node.parent.is_some_and(|parent| chart.node(parent).kind == NodeKind::And),
             activity: None,
             activity_region: region,
-            parent: node.parent.map(|parent| self.layout.place_of(parent)),
-            start: self.starts[id.0 as usize].map(|start| self.layout.place_of(start)),
+            parent: node.parent.map(|parent| self.layout.index_of(parent)),
+            start: self.starts[id.0 as usize].map(|start| self.layout.index_of(start)),
             parts: self.parts(id),
             histories: 0..0,
             done: self.done(id),
@@ -393,7 +393,7 @@ impl ChartCompiler<'_> {
             NodeKind::And => is_state(self.chart.node(**child).kind),
             _ => self.chart.node(**child).kind == NodeKind::End,
         };
-        self.chart.children(id).iter().filter(is_part).map(|&child| self.layout.place_of(child)).collect()
+        self.chart.children(id).iter().filter(is_part).map(|&child| self.layout.index_of(child)).collect()
     }
 
     /// The event raised by the completion of a composite.
@@ -476,8 +476,8 @@ fn awaited_events(states: &[CompiledNode], triggers: &[EventFilter]) -> BTreeSet
 fn max_activities(states: &[CompiledNode]) -> usize {
     let mut inside = vec![0; states.len()];
     let mut most = 0;
-    for (place, state) in states.iter().enumerate() {
-        most = inside[place] + usize::from(state.activity.is_some());
+    for (position, state) in states.iter().enumerate() {
+        most = inside[position] + usize::from(state.activity.is_some());
         let Some(parent) = state.parent.map(NodeIndex::index) else { continue };
         inside[parent] = match states[parent].kind {
             NodeKind::And => inside[parent] + most,

@@ -125,7 +125,7 @@ impl ChartValidator<'_> {
 
     /// Whether a node is inside another or is it.
     fn contains(&self, outer: NodeId, inner: NodeId) -> bool {
-        self.layout.contains(self.layout.place_of(outer), self.layout.place_of(inner))
+        self.layout.contains(self.layout.index_of(outer), self.layout.index_of(inner))
     }
 
     fn nodes(&mut self) {

@@ -250,7 +250,7 @@ impl CompoundPathSearch<'_> {
     /// any order.
     fn path_through_join(&mut self, state: NodeId, node: NodeId, join: usize, paths: &mut Vec<CompoundPath>) {
         let mut sources = self.joins[join].sources.clone();
-        sources.sort_by_key(|&source| self.layout.rank(self.layout.place_of(source)));
+        sources.sort_by_key(|&source| self.layout.rank(self.layout.index_of(source)));
         let Some((&first, others)) = sources.split_first() else { return };
         if first != state && self.semantics.eventless != CompletionTrigger::Once {
             return;

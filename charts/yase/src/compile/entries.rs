@@ -33,18 +33,18 @@ pub(crate) fn between(
     scope: NodeId,
     target: NodeId,
 ) -> Option<InlineVec<NodeIndex>> {
-    let mut way: InlineVec<NodeId> =
+    let mut nodes: InlineVec<NodeId> =
         std::iter::once(target).chain(chart.ancestors(target)).take_while(|&node| node != scope).collect();
     let mut entered = InlineVec::new();
     // the nodes still to be entered, the next one last, and whether each is on the path
     let mut open: InlineVec<(NodeId, bool)> = InlineVec::new();
-    push_children(chart, starts, scope, way.pop(), &mut open);
+    push_children(chart, starts, scope, nodes.pop(), &mut open);
     while let Some((node, on_way)) = open.pop() {
         if entered.len() + open.len() >= MAX_STORED_ENTRIES {
             return None;
         }
-        entered.push(layout.place_of(node));
-        let next = if on_way { way.pop() } else { None };
+        entered.push(layout.index_of(node));
+        let next = if on_way { nodes.pop() } else { None };
         if next.is_none() && chart.node(node).kind == NodeKind::Or && starts[node.0 as usize].is_none() {
             return None;
         }

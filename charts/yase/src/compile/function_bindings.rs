@@ -38,8 +38,8 @@ impl<'a> FunctionBindings<'a> {
     /// Resolves the numbers in the functions for a scope with these timers.
     fn slots(&mut self, region: ScopeId, timers: &[String]) -> Arc<Slots> {
         let (sources, functions) = (&self.sources, &self.functions);
-        let place = |name: &&str| timers.iter().position(|timer| timer == name);
-        let timers = self.program.timers.iter().map(|name| place(name).map(|place| TimerId(place as u32)));
+        let position = |name: &&str| timers.iter().position(|timer| timer == name);
+        let timers = self.program.timers.iter().map(|name| position(name).map(|index| TimerId(index as u32)));
         let slots =
             || Slots { sources: sources.clone(), functions: functions.clone(), timers: timers.collect() };
         self.slots.entry(region).or_insert_with(|| Arc::new(slots())).clone()

@@ -52,10 +52,10 @@ impl NodeOrder {
                 open.push((node, first, visited + 1));
                 open.push((child, NodeIndex(nodes.len() as u32), 0));
             } else {
-                let place = NodeIndex(nodes.len() as u32);
-                layout.indices[node.0 as usize] = place;
-                layout.firsts[place.index()] = first;
-                layout.ranks[place.index()] = ranks[node.0 as usize];
+                let index = NodeIndex(nodes.len() as u32);
+                layout.indices[node.0 as usize] = index;
+                layout.firsts[index.index()] = first;
+                layout.ranks[index.index()] = ranks[node.0 as usize];
                 nodes.push(node);
             }
         }
@@ -74,36 +74,36 @@ impl NodeOrder {
     }
 
     /// All indices, in order.
-    pub(crate) fn places(&self) -> impl DoubleEndedIterator<Item = NodeIndex> + use<> {
+    pub(crate) fn indices(&self) -> impl DoubleEndedIterator<Item = NodeIndex> + use<> {
         (0..self.nodes.len() as u32).map(NodeIndex)
     }
 
     /// The index of a node, if it belongs to the chart.
     #[inline]
-    pub(crate) fn place(&self, node: NodeId) -> Option<NodeIndex> {
+    pub(crate) fn find_index(&self, node: NodeId) -> Option<NodeIndex> {
         self.indices.get(node.0 as usize).copied()
     }
 
     /// The index of a node of the chart.
-    pub(crate) fn place_of(&self, node: NodeId) -> NodeIndex {
+    pub(crate) fn index_of(&self, node: NodeId) -> NodeIndex {
         self.indices[node.0 as usize]
     }
 
     #[inline]
-    pub(crate) fn node(&self, place: NodeIndex) -> NodeId {
-        self.nodes[place.index()]
+    pub(crate) fn node(&self, node: NodeIndex) -> NodeId {
+        self.nodes[node.index()]
     }
 
     /// The first index inside a node; its own is the last.
     #[inline]
-    pub(crate) fn first(&self, place: NodeIndex) -> NodeIndex {
-        self.firsts[place.index()]
+    pub(crate) fn first(&self, node: NodeIndex) -> NodeIndex {
+        self.firsts[node.index()]
     }
 
     /// The node's number when parents are counted before children: document order.
     #[inline]
-    pub(crate) fn rank(&self, place: NodeIndex) -> u32 {
-        self.ranks[place.index()]
+    pub(crate) fn rank(&self, node: NodeIndex) -> u32 {
+        self.ranks[node.index()]
     }
 
     /// Whether `inner` is inside `outer` or is it.
@@ -125,13 +125,13 @@ mod tests {
         let b = chart.add(Statechart::ROOT, Node::new(NodeKind::Basic, "b"));
         let inner = chart.add(a, Node::new(NodeKind::Basic, "inner"));
         let layout = NodeOrder::new(&chart);
-        let order: Vec<NodeId> = layout.places().map(|place| layout.node(place)).collect();
+        let order: Vec<NodeId> = layout.indices().map(|index| layout.node(index)).collect();
         assert_eq!(order, [inner, a, b, Statechart::ROOT]);
-        let place = |node| layout.place_of(node);
-        assert_eq!(layout.first(place(a)), place(inner));
-        assert!(layout.contains(place(a), place(inner)) && !layout.contains(place(a), place(b)));
-        assert_eq!([Statechart::ROOT, a, inner, b].map(|node| layout.rank(place(node))), [0, 1, 2, 3]);
-        assert_eq!(layout.place(NodeId(4)), None);
+        let index = |node| layout.index_of(node);
+        assert_eq!(layout.first(index(a)), index(inner));
+        assert!(layout.contains(index(a), index(inner)) && !layout.contains(index(a), index(b)));
+        assert_eq!([Statechart::ROOT, a, inner, b].map(|node| layout.rank(index(node))), [0, 1, 2, 3]);
+        assert_eq!(layout.find_index(NodeId(4)), None);
     }
 
     #[test]
@@ -142,7 +142,7 @@ mod tests {
             node = chart.add(node, Node::new(NodeKind::Or, "d"));
         }
         let layout = NodeOrder::new(&chart);
-        assert_eq!(layout.place_of(node), NodeIndex(0));
+        assert_eq!(layout.index_of(node), NodeIndex(0));
         assert_eq!(layout.root(), NodeIndex(100_000));
     }
 }

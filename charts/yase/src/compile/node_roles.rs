@@ -84,8 +84,8 @@ fn forks(chart: &Statechart, layout: &NodeOrder, point: NodeId, outgoing: &[Tran
     let mut regions: Vec<Option<NodeId>> = Vec::new();
     for &id in outgoing {
         let transition = chart.transition(id);
-        let target = layout.place_of(transition.target);
-        let holds = |region: &&NodeId| layout.contains(layout.place_of(**region), target);
+        let target = layout.index_of(transition.target);
+        let holds = |region: &&NodeId| layout.contains(layout.index_of(**region), target);
         if transition.expression.guard.is_some() {
             return false;
         }

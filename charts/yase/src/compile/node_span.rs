@@ -19,8 +19,8 @@ impl NodeSpan {
         self.last
     }
 
-    pub(crate) fn of(place: NodeIndex) -> NodeSpan {
-        NodeSpan { first: place, last: place }
+    pub(crate) fn of(node: NodeIndex) -> NodeSpan {
+        NodeSpan { first: node, last: node }
     }
 
     pub(crate) fn with(self, other: NodeSpan) -> NodeSpan {
@@ -35,28 +35,28 @@ pub(crate) fn lowest_or(
     node: NodeId,
     hull: NodeSpan,
 ) -> Option<NodeId> {
-    let hull = hull.with(NodeSpan::of(layout.place_of(node)));
+    let hull = hull.with(NodeSpan::of(layout.index_of(node)));
     chart.ancestors(node).find(|&ancestor| {
-        let place = layout.place_of(ancestor);
-        chart.node(ancestor).kind == NodeKind::Or && layout.first(place) <= hull.first && hull.last < place
+        let index = layout.index_of(ancestor);
+        chart.node(ancestor).kind == NodeKind::Or && layout.first(index) <= hull.first && hull.last < index
     })
 }
 
 /// The lowest node that contains everything in a span, possibly one of its nodes.
 pub(crate) fn lowest_node(chart: &Statechart, layout: &NodeOrder, hull: NodeSpan) -> NodeId {
     let last = layout.node(hull.last);
-    let contains = |node: &NodeId| layout.first(layout.place_of(*node)) <= hull.first;
+    let contains = |node: &NodeId| layout.first(layout.index_of(*node)) <= hull.first;
     std::iter::once(last).chain(chart.ancestors(last)).find(contains).unwrap_or(Statechart::ROOT)
 }
 
 /// Whether any two of the nodes lie in different regions of an AND.
 pub(crate) fn are_orthogonal(chart: &Statechart, layout: &NodeOrder, nodes: &[NodeId]) -> bool {
-    let mut places: Vec<NodeIndex> = nodes.iter().map(|&node| layout.place_of(node)).collect();
-    places.sort_unstable();
+    let mut indices: Vec<NodeIndex> = nodes.iter().map(|&node| layout.index_of(node)).collect();
+    indices.sort_unstable();
     // in sorted order, the lowest common ancestor of any pair is that of some adjacent pair
-    places.windows(2).all(|pair| {
+    indices.windows(2).all(|pair| {
         let around = lowest_node(chart, layout, NodeSpan::of(pair[0]).with(NodeSpan::of(pair[1])));
-        chart.node(around).kind == NodeKind::And && layout.place_of(around) > pair[1]
+        chart.node(around).kind == NodeKind::And && layout.index_of(around) > pair[1]
     })
 }
 

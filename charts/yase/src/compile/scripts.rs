@@ -27,16 +27,16 @@ pub enum ScriptLocation {
 
 /// The locations of each script, by its number: guards and actions of transitions, then those of
 /// nodes.
-pub(crate) fn places(chart: &Statechart, scripts: &ScriptInterner) -> Box<[Box<[ScriptLocation]>]> {
-    let mut places = vec![Vec::new(); scripts.len()];
+pub(crate) fn script_locations(chart: &Statechart, scripts: &ScriptInterner) -> Box<[Box<[ScriptLocation]>]> {
+    let mut locations = vec![Vec::new(); scripts.len()];
     if scripts.is_empty() {
         return Box::default();
     }
-    let mut note = |text: &str, place: ScriptLocation| {
-        if let Some(list) = scripts.find(text).and_then(|id| places.get_mut(id.0 as usize))
-            && list.last() != Some(&place)
+    let mut note = |text: &str, location: ScriptLocation| {
+        if let Some(list) = scripts.find(text).and_then(|id| locations.get_mut(id.0 as usize))
+            && list.last() != Some(&location)
         {
-            list.push(place);
+            list.push(location);
         }
     };
     for (id, transition) in chart.transitions() {
@@ -50,15 +50,15 @@ pub(crate) fn places(chart: &Statechart, scripts: &ScriptInterner) -> Box<[Box<[
         of_actions(&node.entry, ActionLocation::Entry(id), &mut note);
         of_actions(&node.exit, ActionLocation::Exit(id), &mut note);
     }
-    places.into_iter().map(Vec::into_boxed_slice).collect()
+    locations.into_iter().map(Vec::into_boxed_slice).collect()
 }
 
 fn of_actions(actions: &[Action], location: ActionLocation, note: &mut impl FnMut(&str, ScriptLocation)) {
     for (index, action) in actions.iter().enumerate() {
-        let place = ScriptLocation::Action(location, index);
+        let here = ScriptLocation::Action(location, index);
         match &action.kind {
-            ActionKind::Script(text) => note(text, place),
-            ActionKind::Assign { value, .. } => walk(value, &mut |text| note(text, place)),
+            ActionKind::Script(text) => note(text, here),
+            ActionKind::Assign { value, .. } => walk(value, &mut |text| note(text, here)),
             _ => {}
         }
     }

@@ -48,7 +48,7 @@ impl ChartCompiler<'_> {
         let is_last = segment.index + 1 == path.segments.len();
         match path.change {
             ConfigurationChange::Vacates if is_last => {
-                step.exits = self.inside(self.layout.place_of(path.scope));
+                step.exits = self.inside(self.layout.index_of(path.scope));
                 return step;
             }
             ConfigurationChange::None if path.leaves[..] == [PathEnd::Node(path.source)] => return step,
@@ -59,14 +59,14 @@ impl ChartCompiler<'_> {
                 path.others.iter().chain([&path.source]).find(|&&node| node == segment.transition.source);
             let around = self.around_sources(path);
             let region = region.and_then(|&node| node_span::child_towards(self.chart, around, node));
-            step.exits = region.and_then(|region| self.inside(self.layout.place_of(region)));
+            step.exits = region.and_then(|region| self.inside(self.layout.index_of(region)));
             return step;
         }
         if self.kind(target) == NodeKind::Terminate && self.semantics.terminate == TerminateExit::Nothing {
             step.end = ends.next().map(|end| self.leaf(end));
             return step;
         }
-        // the way out of an entry point to its own composite ends where that was entered
+        // a transition from an entry point to its own composite ends where that was entered
         let source = segment.transition.source;
         if self.kind(source) == NodeKind::EntryPoint && self.parent(source) == target {
             ends.next();
@@ -87,7 +87,7 @@ impl ChartCompiler<'_> {
             }
             NodeKind::EntryPoint if !self.leads_inside(segment) => {
                 let composite = self.parent(target);
-                (Some(composite), Some(TransitionTarget::Node(self.layout.place_of(composite))))
+                (Some(composite), Some(TransitionTarget::Node(self.layout.index_of(composite))))
             }
             NodeKind::Choice | NodeKind::Terminate => {
                 (Some(self.position(target)), ends.next().map(|end| self.leaf(end)))
@@ -109,11 +109,11 @@ impl ChartCompiler<'_> {
     }
 
     fn contains(&self, outer: NodeId, inner: NodeId) -> bool {
-        outer != inner && self.layout.contains(self.layout.place_of(outer), self.layout.place_of(inner))
+        outer != inner && self.layout.contains(self.layout.index_of(outer), self.layout.index_of(inner))
     }
 
     fn span(&self, node: NodeId) -> NodeSpan {
-        NodeSpan::of(self.layout.place_of(node))
+        NodeSpan::of(self.layout.index_of(node))
     }
 
     /// Segments into a JOIN that is taken together: all but the last leave their regions only.
@@ -150,10 +150,10 @@ impl ChartCompiler<'_> {
         }
         let own = self.stands_in(source);
         let fits = |&node: &NodeId| {
-            let place = self.layout.place_of(node);
+            let index = self.layout.index_of(node);
             (self.kind(node) == NodeKind::Or || node == own && self.is_point(source))
-                && self.layout.first(place) <= hull.first()
-                && hull.last() < place
+                && self.layout.first(index) <= hull.first()
+                && hull.last() < index
         };
         self.chart.ancestors(source).find(fits).unwrap_or(Statechart::ROOT)
     }
@@ -175,18 +175,18 @@ impl ChartCompiler<'_> {
         if self.kind(target) == NodeKind::ExitPoint && self.parent(target) == boundary {
             // from the border or the composite itself nothing is left until the point is passed
             let is_inside = source != boundary && !(self.is_point(source) && stands == boundary);
-            return self.inside(self.layout.place_of(boundary)).filter(|_| is_inside);
+            return self.inside(self.layout.index_of(boundary)).filter(|_| is_inside);
         }
         if boundary == source {
-            return self.inside(self.layout.place_of(source));
+            return self.inside(self.layout.index_of(source));
         }
         let is_first = self.beside(segment).next().is_none_or(|first| first == target);
         if !is_first || !self.is_state(source) && stands == boundary {
             return None;
         }
         let child = node_span::child_towards(self.chart, boundary, source)?;
-        let place = self.layout.place_of(child);
-        Some((self.layout.first(place), place))
+        let node = self.layout.index_of(child);
+        Some((self.layout.first(node), node))
     }
 
     fn is_state(&self, node: NodeId) -> bool {
@@ -239,10 +239,10 @@ impl ChartCompiler<'_> {
         let up = std::iter::once(node).chain(self.chart.ancestors(node));
         let mut path: Vec<NodeIndex> = up
             .take_while(|&node| self.contains(boundary, node))
-            .map(|node| self.layout.place_of(node))
+            .map(|node| self.layout.index_of(node))
             .collect();
         let is_and = self.kind(boundary) == NodeKind::And && self.contains(boundary, node);
-        path.extend(is_and.then(|| self.layout.place_of(boundary)));
+        path.extend(is_and.then(|| self.layout.index_of(boundary)));
         path.reverse();
         path.into()
     }

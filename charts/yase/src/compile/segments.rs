@@ -24,12 +24,12 @@ pub(crate) struct CompiledSegment {
 impl ChartCompiler<'_> {
     /// Stores the paths of one node, with or without a trigger, as a branch tree.
     pub(crate) fn tree(&mut self, paths: &[CompoundPath], eventless: bool) -> BranchRange {
-        let ways: Vec<&CompoundPath> =
+        let suitable: Vec<&CompoundPath> =
             paths.iter().filter(|path| path.condition.is_some() == eventless).collect();
         let first = self.compounds.len();
-        let branches = self.grow(&ways, 0);
-        if ways.iter().any(|way| self.is_drawn_late(way)) {
-            self.write_rows(&ways, branches.start, first);
+        let branches = self.grow(&suitable, 0);
+        if suitable.iter().any(|path| self.is_drawn_late(path)) {
+            self.write_rows(&suitable, branches.start, first);
         }
         branches
     }
@@ -169,14 +169,14 @@ impl ChartCompiler<'_> {
                 effects.push((id, segment.effects));
             }
         }
-        let (source, scope) = (self.layout.place_of(path.source), self.layout.place_of(path.scope));
+        let (source, scope) = (self.layout.index_of(path.source), self.layout.index_of(path.scope));
         let transitions = || path.segments.iter().map(|&id| self.chart.transition(id));
         let is_internal = path.change != ConfigurationChange::Vacates
             && path.scope == path.source
             && transitions().any(|transition| transition.internal);
         let compound = CompoundTransition {
             source,
-            others: path.others.iter().map(|&node| self.layout.place_of(node)).collect(),
+            others: path.others.iter().map(|&node| self.layout.index_of(node)).collect(),
             region: path.region,
             scope,
             exits: self.inside(scope).filter(|_| path.change != ConfigurationChange::None),
@@ -187,7 +187,7 @@ impl ChartCompiler<'_> {
                 _ => None,
             },
             arrival: path.arrival.map(|arrival| {
-                let region = self.layout.place_of(arrival.region);
+                let region = self.layout.index_of(arrival.region);
                 Arrival {
                     join: arrival.join,
                     slot: arrival.slot,
@@ -220,14 +220,14 @@ impl ChartCompiler<'_> {
     }
 
     /// The index range of the nodes inside a node, if there are any.
-    pub(crate) fn inside(&self, place: NodeIndex) -> Option<(NodeIndex, NodeIndex)> {
-        let first = self.layout.first(place);
-        (first < place).then(|| (first, NodeIndex(place.0 - 1)))
+    pub(crate) fn inside(&self, node: NodeIndex) -> Option<(NodeIndex, NodeIndex)> {
+        let first = self.layout.first(node);
+        (first < node).then(|| (first, NodeIndex(node.0 - 1)))
     }
 
     pub(crate) fn leaf(&self, leaf: End) -> TransitionTarget {
         match leaf {
-            End::Node(node) => TransitionTarget::Node(self.layout.place_of(node)),
+            End::Node(node) => TransitionTarget::Node(self.layout.index_of(node)),
             End::Choice(number) => TransitionTarget::Choice(number),
             End::Terminate => TransitionTarget::Terminate,
         }
@@ -246,7 +246,7 @@ impl ChartCompiler<'_> {
         let listed = entries::between(self.chart, &self.layout, &self.starts, path.scope, target);
         let goes_on = |list: &entries::InlineVec<NodeIndex>| {
             self.semantics.start == InitialState::SameStep
-                && list.iter().any(|&place| self.chart.node(self.layout.node(place)).kind == NodeKind::Start)
+                && list.iter().any(|&node| self.chart.node(self.layout.node(node)).kind == NodeKind::Start)
         };
         listed
             .filter(|list| !goes_on(list))
@@ -256,7 +256,7 @@ impl ChartCompiler<'_> {
     fn owner(&self, path: &CompoundPath) -> Owner {
         match path.leaves.first() {
             Some(End::Choice(_)) => Owner::Dynamic,
-            Some(&End::Node(node)) => Owner::State(self.layout.place_of(self.owner_of(node))),
+            Some(&End::Node(node)) => Owner::State(self.layout.index_of(self.owner_of(node))),
             Some(End::Terminate) | None => Owner::None,
         }
     }

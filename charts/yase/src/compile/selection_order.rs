@@ -54,8 +54,8 @@ impl SelectionOrderBuilder<'_> {
             if next == end {
                 continue;
             }
-            let place = NodeIndex(next);
-            let waits = if self.visited[place.index()] { &[] } else { self.waits_for(place) };
+            let node = NodeIndex(next);
+            let waits = if self.visited[node.index()] { &[] } else { self.waits_for(node) };
             let unseen = |&&(_, other): &&(NodeIndex, NodeIndex)| !self.visited[other.index() - 1];
             if let Some(&(_, other)) = waits.iter().find(unseen) {
                 open.push((next, end));
@@ -63,16 +63,16 @@ impl SelectionOrderBuilder<'_> {
                 continue;
             }
             open.push((next + 1, end));
-            if !std::mem::replace(&mut self.visited[place.index()], true) {
-                order.push(place);
+            if !std::mem::replace(&mut self.visited[node.index()], true) {
+                order.push(node);
             }
         }
         order.into()
     }
 
-    fn waits_for(&self, place: NodeIndex) -> &[(NodeIndex, NodeIndex)] {
-        let start = self.before.partition_point(|&(first, _)| first < place);
-        let end = self.before.partition_point(|&(first, _)| first <= place);
+    fn waits_for(&self, node: NodeIndex) -> &[(NodeIndex, NodeIndex)] {
+        let start = self.before.partition_point(|&(first, _)| first < node);
+        let end = self.before.partition_point(|&(first, _)| first <= node);
         &self.before[start..end]
     }
 }

@@ -41,7 +41,7 @@ impl<H: Host> Macrostep<'_, H> {
     #[cold]
     pub(crate) fn action_failed(&mut self, location: ActionLocation, index: usize, error: &ActionError) {
         self.run.raise(self.chart, self.chart.errors.action, true, 0);
-        self.host.report(self.chart, Notice::ActionFailed { place: location, index, error });
+        self.host.report(self.chart, Notice::ActionFailed { location, index, error });
     }
 
     /// Actions of the host are forwarded directly.

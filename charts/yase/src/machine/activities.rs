@@ -106,46 +106,46 @@ impl ActivityTable {
 impl MachineState {
     /// The state of an activity was entered: from now on its scope is locked.
     #[inline]
-    pub(crate) fn enqueue_activity(&mut self, chart: &CompiledChart, place: NodeIndex, activity: usize) {
+    pub(crate) fn enqueue_activity(&mut self, chart: &CompiledChart, node: NodeIndex, activity: usize) {
         self.activities.count += 1;
         self.activities.queued = true;
         let number = self.activities.count;
         self.activities
             .set(activity, ActivityState { phase: InvocationPhase::Queued, number, cancelled: false });
-        self.lock(chart, place);
+        self.lock(chart, node);
     }
 
     #[inline]
-    pub(crate) fn lock(&mut self, chart: &CompiledChart, place: NodeIndex) {
-        self.running.insert(place.index());
-        self.running_regions.insert(chart.states[place.index()].activity_region.index());
+    pub(crate) fn lock(&mut self, chart: &CompiledChart, node: NodeIndex) {
+        self.running.insert(node.index());
+        self.running_regions.insert(chart.states[node.index()].activity_region.index());
     }
 
     #[inline]
-    pub(crate) fn unlock(&mut self, chart: &CompiledChart, place: NodeIndex) {
-        self.running.remove(place.index());
-        self.running_regions.remove(chart.states[place.index()].activity_region.index());
+    pub(crate) fn unlock(&mut self, chart: &CompiledChart, node: NodeIndex) {
+        self.running.remove(node.index());
+        self.running_regions.remove(chart.states[node.index()].activity_region.index());
     }
 
     #[inline]
     pub(crate) fn activation(
         &self,
         chart: &CompiledChart,
-        place: NodeIndex,
+        index: NodeIndex,
         slot: ActivityState,
     ) -> Activation {
-        let region = chart.states[place.index()].activity_region;
-        Activation { node: chart.layout.node(place), region, number: slot.number }
+        let region = chart.states[index.index()].activity_region;
+        Activation { node: chart.layout.node(index), region, number: slot.number }
     }
 
     /// The indices of the node and the activity of an activation, if it is the current one.
     #[inline]
     fn current(&self, chart: &CompiledChart, activation: Activation) -> Option<(NodeIndex, usize)> {
-        let place = chart.layout.place(activation.node)?;
-        let activity = chart.states[place.index()].activity?;
+        let node = chart.layout.find_index(activation.node)?;
+        let activity = chart.states[node.index()].activity?;
         let is_current =
             self.status == Status::Running && self.activities.slot(activity).number == activation.number;
-        is_current.then_some((place, activity))
+        is_current.then_some((node, activity))
     }
 
     pub(crate) fn activity_returned(
@@ -154,7 +154,7 @@ impl MachineState {
         activation: Activation,
         outcome: Outcome,
     ) -> bool {
-        let Some((place, activity)) = self.current(chart, activation) else { return false };
+        let Some((node, activity)) = self.current(chart, activation) else { return false };
         let slot = self.activities.slot_mut(activity);
         if slot.phase != InvocationPhase::Running {
             return false;
@@ -164,38 +164,38 @@ impl MachineState {
             Outcome::Ongoing => InvocationPhase::Ongoing,
             Outcome::Failed => InvocationPhase::Failed,
         };
-        self.unlock(chart, place);
-        self.release_held(chart, place);
+        self.unlock(chart, node);
+        self.release_held(chart, node);
         if outcome == Outcome::Failed {
             self.queues.arrive(chart.errors.activity.into());
         }
         if outcome == Outcome::Done {
-            self.completed(chart, place);
+            self.completed(chart, node);
         }
         self.needs_step = true;
         true
     }
 
     /// Offers the events again that were held because of this activity.
-    fn release_held(&mut self, chart: &CompiledChart, place: NodeIndex) {
-        let region = chart.states[place.index()].activity_region;
+    fn release_held(&mut self, chart: &CompiledChart, node: NodeIndex) {
+        let region = chart.states[node.index()].activity_region;
         self.queues.release(|compound| {
             let compound = &chart.compounds[compound.0 as usize];
             let mut sources = compound.sources();
-            compound.leaves(place) || sources.any(|source| chart.states[source.index()].region == region)
+            compound.leaves(node) || sources.any(|source| chart.states[source.index()].region == region)
         });
     }
 
     pub(crate) fn activity_resumed(&mut self, chart: &CompiledChart, activation: Activation) -> bool {
-        let Some((place, activity)) = self.current(chart, activation) else { return false };
+        let Some((node, activity)) = self.current(chart, activation) else { return false };
         let slot = self.activities.slot(activity);
         if !matches!(slot.phase, InvocationPhase::Ongoing | InvocationPhase::Failed)
-            || self.has_pending_exit(chart, place)
+            || self.has_pending_exit(chart, node)
         {
             return false;
         }
         self.activities.slot_mut(activity).phase = InvocationPhase::Running;
-        self.lock(chart, place);
+        self.lock(chart, node);
         true
     }
 }

@@ -96,12 +96,12 @@ impl<H: Host> Macrostep<'_, H> {
     /// Whether a complete path is not blocked by a running activity.
     #[inline]
     fn accepts(&mut self, id: CompoundTransitionId, search: BranchQuery<'_>) -> bool {
-        let Some(place) = search.state else { return true };
+        let Some(node) = search.state else { return true };
         if !self.is_blocked(self.compound(id)) {
             return true;
         }
         if search.occurrence.is_some() {
-            self.note_blocked(id, place);
+            self.note_blocked(id, node);
         }
         false
     }
@@ -112,18 +112,18 @@ impl<H: Host> Macrostep<'_, H> {
 
     fn allows(&self, condition: EnablingCondition, search: BranchQuery<'_>) -> bool {
         let chart = self.chart;
-        let (Some(place), occurrence) = (search.state, search.occurrence) else { return true };
+        let (Some(node), occurrence) = (search.state, search.occurrence) else { return true };
         match condition {
             EnablingCondition::None => true,
             EnablingCondition::Trigger(trigger) => {
                 occurrence.is_some_and(|occurrence| matches(&chart.triggers[trigger], occurrence))
             }
-            EnablingCondition::Arrival(index) => self.may_arrive(&chart.arrivals[index], place, occurrence),
+            EnablingCondition::Arrival(index) => self.may_arrive(&chart.arrivals[index], node, occurrence),
             _ if occurrence.is_some() => false,
             EnablingCondition::Always => true,
-            EnablingCondition::Completed => search.is_complete || self.run.is_complete(chart, place),
-            EnablingCondition::Quiescent => !self.has_running_inside(place) && !self.can_step_inside(place),
-            EnablingCondition::NoStepInside => !self.can_step_inside(place),
+            EnablingCondition::Completed => search.is_complete || self.run.is_complete(chart, node),
+            EnablingCondition::Quiescent => !self.has_running_inside(node) && !self.can_step_inside(node),
+            EnablingCondition::NoStepInside => !self.can_step_inside(node),
             EnablingCondition::AllCompleted(join) => self.can_join(join),
         }
     }
@@ -131,12 +131,12 @@ impl<H: Host> Macrostep<'_, H> {
     fn may_arrive(
         &self,
         condition: &ArrivalCondition,
-        place: NodeIndex,
+        node: NodeIndex,
         occurrence: Option<&PoppedEvent>,
     ) -> bool {
         let is_due = match (condition.trigger, occurrence) {
             (Some(trigger), Some(occurrence)) => matches(&self.chart.triggers[trigger], occurrence),
-            (None, None) => self.run.is_complete(self.chart, place),
+            (None, None) => self.run.is_complete(self.chart, node),
             _ => false,
         };
         is_due

@@ -9,15 +9,15 @@ use crate::statechart::NodeKind;
 impl MachineState {
     /// Whether an active state has completed.
     #[inline]
-    pub(crate) fn is_complete(&self, chart: &CompiledChart, place: NodeIndex) -> bool {
-        let state = &chart.states[place.index()];
+    pub(crate) fn is_complete(&self, chart: &CompiledChart, node: NodeIndex) -> bool {
+        let state = &chart.states[node.index()];
         if state
             .activity
             .is_some_and(|activity| self.activities.slot(activity).phase != InvocationPhase::Done)
         {
             return false;
         }
-        if self.vacated.contains(place.index()) {
+        if self.vacated.contains(node.index()) {
             return true;
         }
         match state.kind {
@@ -31,17 +31,17 @@ impl MachineState {
 
     /// Whether all enclosing composites have reached an END, as the completion event of an AND
     /// requires.
-    fn has_ended(&self, chart: &CompiledChart, place: NodeIndex) -> bool {
-        let state = &chart.states[place.index()];
+    fn has_ended(&self, chart: &CompiledChart, node: NodeIndex) -> bool {
+        let state = &chart.states[node.index()];
         match state.kind {
             NodeKind::And => state.parts.iter().all(|&region| self.has_ended(chart, region)),
-            _ => self.vacated.contains(place.index()) || state.parts.iter().any(|&end| self.is_active(end)),
+            _ => self.vacated.contains(node.index()) || state.parts.iter().any(|&end| self.is_active(end)),
         }
     }
 
     /// Processes the entry of an END other than the root's.
-    pub(crate) fn end_reached(&mut self, chart: &CompiledChart, place: NodeIndex) {
-        let Some(composite) = chart.states[place.index()].parent else { return };
+    pub(crate) fn end_reached(&mut self, chart: &CompiledChart, node: NodeIndex) {
+        let Some(composite) = chart.states[node.index()].parent else { return };
         if chart.semantics_ref().completion_events {
             self.raise_done(chart, composite);
         }
@@ -51,11 +51,11 @@ impl MachineState {
     /// Raises the completion event of a composite, and those of the ANDs that are complete with it.
     fn raise_done(&mut self, chart: &CompiledChart, composite: NodeIndex) {
         let mut next = Some(composite);
-        while let Some(place) = next {
-            if let Some(event) = chart.states[place.index()].done {
+        while let Some(node) = next {
+            if let Some(event) = chart.states[node.index()].done {
                 self.raise(chart, event, true, 0);
             }
-            next = chart.states[place.index()].parent.filter(|&parent| {
+            next = chart.states[node.index()].parent.filter(|&parent| {
                 chart.states[parent.index()].kind == NodeKind::And && self.has_ended(chart, parent)
             });
         }
@@ -64,8 +64,8 @@ impl MachineState {
     /// Records that a state has completed: where completion is examined once, it is examined next,
     /// with the ANDs that are complete with it.
     #[inline]
-    pub(crate) fn completed(&mut self, chart: &CompiledChart, place: NodeIndex) {
-        self.completed_from(chart, Some(place));
+    pub(crate) fn completed(&mut self, chart: &CompiledChart, node: NodeIndex) {
+        self.completed_from(chart, Some(node));
     }
 
     #[inline]
@@ -74,11 +74,11 @@ impl MachineState {
             return;
         }
         let mut next = first;
-        while let Some(place) = next {
-            if !self.completions.contains(&place) {
-                self.completions.push_back(place);
+        while let Some(node) = next {
+            if !self.completions.contains(&node) {
+                self.completions.push_back(node);
             }
-            next = self.complete_and(chart, place);
+            next = self.complete_and(chart, node);
         }
     }
 
@@ -91,32 +91,32 @@ impl MachineState {
 
     /// Discards the pending completion of a state that was left.
     #[inline]
-    pub(crate) fn forget_completion(&mut self, chart: &CompiledChart, place: NodeIndex) {
-        self.vacated.remove(place.index());
+    pub(crate) fn forget_completion(&mut self, chart: &CompiledChart, node: NodeIndex) {
+        self.vacated.remove(node.index());
         if !self.completions.is_empty() {
-            self.completions.retain(|&completed| completed != place);
+            self.completions.retain(|&completed| completed != node);
         }
         if !chart.joins.is_empty() {
-            self.forget_arrivals_of(chart, place);
+            self.forget_arrivals_of(chart, node);
         }
     }
 
     /// Records that a composite remains without an active child, and counts as complete. For a
     /// region that has arrived at a JOIN this is already known: only the AND around it may become
     /// complete.
-    pub(crate) fn mark_vacated(&mut self, chart: &CompiledChart, place: NodeIndex, has_arrived: bool) {
-        self.vacated.insert(place.index());
-        self.active_leaves.insert(place.index());
-        self.completed_from(chart, if has_arrived { self.complete_and(chart, place) } else { Some(place) });
+    pub(crate) fn mark_vacated(&mut self, chart: &CompiledChart, node: NodeIndex, has_arrived: bool) {
+        self.vacated.insert(node.index());
+        self.active_leaves.insert(node.index());
+        self.completed_from(chart, if has_arrived { self.complete_and(chart, node) } else { Some(node) });
     }
 
     /// A child of a composite is entered.
     #[inline]
     pub(crate) fn mark_occupied(&mut self, chart: &CompiledChart, composite: Option<NodeIndex>) {
-        let Some(place) = composite.filter(|place| self.vacated.contains(place.index())) else { return };
-        self.vacated.remove(place.index());
-        self.active_leaves.remove(place.index());
-        self.forget_arrivals_of(chart, place);
+        let Some(node) = composite.filter(|index| self.vacated.contains(index.index())) else { return };
+        self.vacated.remove(node.index());
+        self.active_leaves.remove(node.index());
+        self.forget_arrivals_of(chart, node);
     }
 
     /// A region that is left, by itself or with its AND, or gets a child again, no longer counts as

@@ -24,13 +24,13 @@ impl<H: Host> Macrostep<'_, H> {
 
     /// Marks a target and its ancestors up to the scope.
     pub(crate) fn mark_for_entry(&mut self, target: NodeIndex, scope: NodeIndex) {
-        let mut next = Some(target).filter(|&place| place != scope);
-        while let Some(place) = next {
-            if self.run.marked.contains(place.index()) {
+        let mut next = Some(target).filter(|&node| node != scope);
+        while let Some(index) = next {
+            if self.run.marked.contains(index.index()) {
                 return;
             }
-            self.run.marked.insert(place.index());
-            next = self.chart.states[place.index()].parent.filter(|&parent| parent != scope);
+            self.run.marked.insert(index.index());
+            next = self.chart.states[index.index()].parent.filter(|&parent| parent != scope);
         }
     }
 
@@ -39,36 +39,36 @@ impl<H: Host> Macrostep<'_, H> {
         let base = self.run.entering.len();
         self.expand_targets(scope)?;
         while self.run.entering.len() > base
-            && let Some(place) = self.run.entering.pop()
+            && let Some(node) = self.run.entering.pop()
         {
             if self.run.status != Status::Running || self.run.terminates {
                 self.run.entering.clear();
                 break;
             }
-            self.run.marked.remove(place.index());
-            self.enter(place);
-            self.expand_targets(place)?;
+            self.run.marked.remove(node.index());
+            self.enter(node);
+            self.expand_targets(node)?;
         }
         Ok(())
     }
 
     /// Determines the nodes entered with a composite: the regions of an AND; the marked child of an
     /// OR, or the target of its HISTORY or its START.
-    fn expand_targets(&mut self, place: NodeIndex) -> Result<(), StepError> {
-        let state = &self.chart.states[place.index()];
+    fn expand_targets(&mut self, node: NodeIndex) -> Result<(), StepError> {
+        let state = &self.chart.states[node.index()];
         match state.kind {
             NodeKind::And => {
-                self.resolve_histories(place)?;
+                self.resolve_histories(node)?;
                 let run = &mut *self.run;
                 let regions = state.parts.iter().rev().filter(|region| !run.active.contains(region.index()));
                 run.entering.extend(regions);
             }
             NodeKind::Or => {
-                if self.resolve_histories(place)? && self.has_active_inside(place) {
+                if self.resolve_histories(node)? && self.has_active_inside(node) {
                     return Ok(());
                 }
-                let child = match self.marked_child(place) {
-                    None if !self.run.terminates => self.enter_start(place)?,
+                let child = match self.marked_child(node) {
+                    None if !self.run.terminates => self.enter_start(node)?,
                     child => child,
                 };
                 self.run.entering.extend(child);
@@ -80,51 +80,51 @@ impl<H: Host> Macrostep<'_, H> {
 
     /// The marked child of an OR: the last marked node inside it, since marks extend up to the
     /// child.
-    pub(crate) fn marked_child(&self, place: NodeIndex) -> Option<NodeIndex> {
-        let first = self.chart.layout.first(place).index();
-        let last = place.index().checked_sub(1)?;
+    pub(crate) fn marked_child(&self, node: NodeIndex) -> Option<NodeIndex> {
+        let first = self.chart.layout.first(node).index();
+        let last = node.index().checked_sub(1)?;
         self.run.marked.last(first, last).map(|index| NodeIndex(index as u32))
     }
 
     /// Returns START, or its target if it is left in the same step.
-    fn enter_start(&mut self, place: NodeIndex) -> Result<Option<NodeIndex>, StepError> {
-        let start = self.chart.states[place.index()].start;
+    fn enter_start(&mut self, node: NodeIndex) -> Result<Option<NodeIndex>, StepError> {
+        let start = self.chart.states[node.index()].start;
         let Some(begin) = start else {
-            self.run.mark_vacated(self.chart, place, false);
+            self.run.mark_vacated(self.chart, node, false);
             return Ok(None);
         };
         if self.semantics().start == InitialState::Place {
             return Ok(start);
         }
         if self.semantics().firing == Firing::EachSegment {
-            return self.leave_start(begin, place);
+            return self.leave_start(begin, node);
         }
-        if !self.follow(self.chart.states[begin.index()].eventless, place)? {
+        if !self.follow(self.chart.states[begin.index()].eventless, node)? {
             return Ok(start);
         }
-        self.resolve_histories(place)?;
+        self.resolve_histories(node)?;
         // the composite remains in START if a HISTORY leads nowhere
-        Ok(self.marked_child(place).or(start))
+        Ok(self.marked_child(node).or(start))
     }
 
     /// Takes the segments out of START. The composite remains in START if none is enabled, or if
     /// they lead to a HISTORY that leads nowhere.
-    fn leave_start(&mut self, start: NodeIndex, place: NodeIndex) -> Result<Option<NodeIndex>, StepError> {
-        if self.run.starting == Some(place) {
+    fn leave_start(&mut self, start: NodeIndex, node: NodeIndex) -> Result<Option<NodeIndex>, StepError> {
+        if self.run.starting == Some(node) {
             return Ok(None);
         }
-        let outer = self.run.starting.replace(place);
+        let outer = self.run.starting.replace(node);
         let goes_on = self.follow_segments(self.chart.states[start.index()].eventless, true);
         self.run.starting = outer;
         goes_on?;
         let stays =
-            !self.run.terminates && self.run.status == Status::Running && !self.has_active_inside(place);
+            !self.run.terminates && self.run.status == Status::Running && !self.has_active_inside(node);
         Ok(stays.then_some(start))
     }
 
-    fn has_active_inside(&self, place: NodeIndex) -> bool {
-        let first = self.chart.layout.first(place).index();
-        place.index() > first && self.run.active.any_in(first, place.index() - 1)
+    fn has_active_inside(&self, node: NodeIndex) -> bool {
+        let first = self.chart.layout.first(node).index();
+        node.index() > first && self.run.active.any_in(first, node.index() - 1)
     }
 
     /// Continues, behind executed actions, on a path that is selected now. Returns false if none is
@@ -148,9 +148,9 @@ impl<H: Host> Macrostep<'_, H> {
     ) -> Result<(), StepError> {
         for &leaf in leaves {
             match leaf {
-                TransitionTarget::Node(place) => {
-                    self.mark_for_entry(place, scope);
-                    self.bind_timers(place);
+                TransitionTarget::Node(node) => {
+                    self.mark_for_entry(node, scope);
+                    self.bind_timers(node);
                 }
                 TransitionTarget::Choice(number) => {
                     let choice = &self.chart.choices[number];
@@ -183,10 +183,10 @@ impl<H: Host> Macrostep<'_, H> {
     }
 
     #[inline(never)]
-    pub(crate) fn enter(&mut self, place: NodeIndex) {
-        let state = &self.chart.states[place.index()];
-        let node = self.chart.layout.node(place);
-        self.run.activate(self.chart, place);
+    pub(crate) fn enter(&mut self, index: NodeIndex) {
+        let state = &self.chart.states[index.index()];
+        let node = self.chart.layout.node(index);
+        self.run.activate(self.chart, index);
         self.run.mark_occupied(self.chart, state.parent);
         if self.run.log.wanted {
             self.run.log.entries.push(node);
@@ -199,19 +199,19 @@ impl<H: Host> Macrostep<'_, H> {
         let scene = ActionContext {
             location: ActionLocation::Entry(node),
             region: state.region,
-            owner: Owner::State(place),
+            owner: Owner::State(index),
         };
         self.perform(&state.entry, scene);
         if state.activity_region != state.region {
             self.host.inherit(state.activity_region, state.region);
         }
         if let Some(activity) = state.activity {
-            self.run.enqueue_activity(self.chart, place, activity);
+            self.run.enqueue_activity(self.chart, index, activity);
         }
         match state.kind {
             NodeKind::End if state.finishes => self.finish_root(),
-            NodeKind::End => self.run.end_reached(self.chart, place),
-            NodeKind::Basic if state.activity.is_none() => self.run.completed(self.chart, place),
+            NodeKind::End => self.run.end_reached(self.chart, index),
+            NodeKind::Basic if state.activity.is_none() => self.run.completed(self.chart, index),
             _ => {}
         }
     }

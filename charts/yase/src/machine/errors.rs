@@ -31,7 +31,8 @@ impl MachineError {
                 MachineError::endless(MachineErrorKind::NeverAdvances, &what, chart, cycle)
             }
             StepError::NoBranch(node) => {
-                let text = format!("no way out of CHOICE `{}` is open", chart.names().name(node));
+                let text =
+                    format!("no outgoing transition of CHOICE `{}` is enabled", chart.names().name(node));
                 let kind = MachineErrorKind::NoBranch;
                 MachineError(Box::new(ErrorDetails { kind, cycle: Box::default(), node: Some(node), text }))
             }

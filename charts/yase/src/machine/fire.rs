@@ -203,17 +203,17 @@ impl<H: Host> Macrostep<'_, H> {
         }
         // in phases another transition may have left it before, or entered it again with something
         // inside
-        let is_empty = |place: NodeIndex| {
-            let first = self.chart.layout.first(place).index();
-            self.run.active.next(first, place.index()) == Some(place.index())
+        let is_empty = |node: NodeIndex| {
+            let first = self.chart.layout.first(node).index();
+            self.run.active.next(first, node.index()) == Some(node.index())
         };
         let arrival = ends_early.or(compound.arrival.as_ref().filter(|arrival| !arrival.passes));
         let vacated = match ends_early {
             Some(arrival) => arrival.inside.map(|_| arrival.region),
             None => compound.vacates,
         };
-        if let Some(place) = vacated.filter(|&place| is_empty(place)) {
-            self.run.mark_vacated(self.chart, place, arrival.is_some());
+        if let Some(index) = vacated.filter(|&node| is_empty(node)) {
+            self.run.mark_vacated(self.chart, index, arrival.is_some());
         }
         if let Some(arrival) = arrival {
             self.run.arrive(self.chart, *arrival);
@@ -223,7 +223,7 @@ impl<H: Host> Macrostep<'_, H> {
         }
         match &compound.entries {
             EntryPlan::None => {}
-            EntryPlan::Listed(list) => list.iter().for_each(|&place| self.enter(place)),
+            EntryPlan::Listed(list) => list.iter().for_each(|&node| self.enter(node)),
             EntryPlan::Found => self.enter_inside(compound.scope)?,
         }
         Ok(())

@@ -75,7 +75,7 @@ impl<H: Host> Macrostep<'_, H> {
                 continue;
             }
             let run = &mut *self.run;
-            run.records[number].nodes.iter().for_each(|place| run.marked.insert(place.index()));
+            run.records[number].nodes.iter().for_each(|node| run.marked.insert(node.index()));
         }
         Ok(is_marked)
     }

@@ -43,59 +43,59 @@ impl<H: Host> Macrostep<'_, H> {
         match self.semantics().exits {
             ExitOrder::Forward => self.run.leaving.sort_unstable(),
             ExitOrder::ReverseDocument => {
-                self.run.leaving.sort_unstable_by_key(|&place| Reverse(layout.rank(place)));
+                self.run.leaving.sort_unstable_by_key(|&node| Reverse(layout.rank(node)));
             }
         }
         // transitions that arrive in one place may leave the same states
         self.run.leaving.dedup();
         let mut index = 0;
-        while let Some(&place) = self.run.leaving.get(index) {
-            self.leave(place);
+        while let Some(&node) = self.run.leaving.get(index) {
+            self.leave(node);
             index += 1;
         }
         self.run.leaving.clear();
     }
 
     #[inline(never)]
-    fn leave(&mut self, place: NodeIndex) {
-        let state = &self.chart.states[place.index()];
+    fn leave(&mut self, node: NodeIndex) {
+        let state = &self.chart.states[node.index()];
         if let Some(activity) = state.activity {
-            self.release_activity(place, activity);
+            self.release_activity(node, activity);
         }
         let scene = ActionContext {
-            location: ActionLocation::Exit(self.chart.layout.node(place)),
+            location: ActionLocation::Exit(self.chart.layout.node(node)),
             region: state.region,
             owner: Owner::None,
         };
         self.perform(&state.exit, scene);
-        self.run.active.remove(place.index());
-        self.run.active_leaves.remove(place.index());
+        self.run.active.remove(node.index());
+        self.run.active_leaves.remove(node.index());
         if state.kind == NodeKind::Start {
-            self.run.waiting_starts.remove(place.index());
+            self.run.waiting_starts.remove(node.index());
         }
-        self.run.forget_completion(self.chart, place);
+        self.run.forget_completion(self.chart, node);
         if self.semantics().timers == TimerScope::State {
-            self.run.release_timers(self.chart, place);
+            self.run.release_timers(self.chart, node);
         }
         if self.run.log.wanted {
-            self.run.log.exits.push(self.chart.layout.node(place));
+            self.run.log.exits.push(self.chart.layout.node(node));
         }
     }
 
     /// Ends the activity of a state that is left: one that waits for the next call is stopped; a
     /// running one is interrupted; one whose state was entered in the same micro-step does not
     /// start.
-    fn release_activity(&mut self, place: NodeIndex, activity: usize) {
+    fn release_activity(&mut self, node: NodeIndex, activity: usize) {
         let slot = self.run.activities.slot(activity);
-        let activation = self.run.activation(self.chart, place, slot);
+        let activation = self.run.activation(self.chart, node, slot);
         match slot.phase {
             InvocationPhase::Ongoing => self.host.stop(activation),
             InvocationPhase::Running if !slot.cancelled => self.host.cancel(activation),
             _ => {}
         }
         self.run.activities.set(activity, ActivityState { phase: InvocationPhase::Idle, ..slot });
-        if self.run.running.contains(place.index()) {
-            self.run.unlock(self.chart, place);
+        if self.run.running.contains(node.index()) {
+            self.run.unlock(self.chart, node);
         }
     }
 }

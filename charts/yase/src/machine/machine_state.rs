@@ -171,15 +171,15 @@ impl StepLog {
 
 impl MachineState {
     pub(crate) fn new(chart: &CompiledChart) -> MachineState {
-        let places = chart.layout.len();
+        let index = chart.layout.len();
         let regions = chart.regions.len();
         MachineState {
             status: Status::Idle,
             now: Timestamp::ZERO,
             needs_step: false,
             step_in_progress: None,
-            active: BitSet::new(places),
-            running: BitSet::new(places),
+            active: BitSet::new(index),
+            running: BitSet::new(index),
             running_regions: BitSet::new(regions),
             activities: ActivityTable::new(chart.activities.len()),
             timers: TimerTable::new(chart.timers.len()),
@@ -189,20 +189,20 @@ impl MachineState {
             reported_failures: Vec::new(),
             drawn_segments: Vec::new(),
             written: BitSet::new(regions),
-            waiting_starts: BitSet::new(places),
+            waiting_starts: BitSet::new(index),
             regions_to_enter: RegionsToEnter::default(),
             livelock_limit: LivelockLimit::new(),
             chooser: Chooser::declared(),
-            active_leaves: BitSet::new(places),
-            vacated: BitSet::new(places),
+            active_leaves: BitSet::new(index),
+            vacated: BitSet::new(index),
             arrived: BitSet::new(chart.joins.iter().map(|join| join.regions.len()).sum()),
             completions: VecDeque::new(),
             records: vec![HistoryValue::default(); chart.histories.len()].into(),
             root_is_final: false,
             terminates: false,
             failure: None,
-            previous_configuration: BitSet::new(places),
-            marked: BitSet::new(places),
+            previous_configuration: BitSet::new(index),
+            marked: BitSet::new(index),
             entering: Vec::new(),
             incomplete: Vec::new(),
             ending_early: Vec::new(),
@@ -216,8 +216,8 @@ impl MachineState {
                 selected: Vec::with_capacity(regions),
                 preempted: Vec::with_capacity(regions),
                 held: Vec::with_capacity(regions),
-                closed: BitSet::new(places),
-                noted: BitSet::new(places),
+                closed: BitSet::new(index),
+                noted: BitSet::new(index),
                 has_noted: false,
             },
             log: StepLog::default(),
@@ -423,8 +423,8 @@ impl MachineState {
     }
 
     /// Discards the timers of a state that is left, with their expiries.
-    pub(crate) fn release_timers(&mut self, chart: &CompiledChart, place: NodeIndex) {
-        while let Some(timer) = self.timers.release(place) {
+    pub(crate) fn release_timers(&mut self, chart: &CompiledChart, node: NodeIndex) {
+        while let Some(timer) = self.timers.release(node) {
             self.queues.withdraw(timer);
             self.timer_changed(chart, timer);
         }
@@ -432,8 +432,8 @@ impl MachineState {
 
     /// Whether a pending interrupting transition will leave it when activities have returned.
     #[inline]
-    pub(crate) fn has_pending_exit(&self, chart: &CompiledChart, place: NodeIndex) -> bool {
-        self.pending.iter().any(|pending| chart.compounds[pending.compound.0 as usize].leaves(place))
+    pub(crate) fn has_pending_exit(&self, chart: &CompiledChart, node: NodeIndex) -> bool {
+        self.pending.iter().any(|pending| chart.compounds[pending.compound.0 as usize].leaves(node))
     }
 
     /// Queues an event before those that arrive.
@@ -444,16 +444,16 @@ impl MachineState {
 
     /// A node becomes active.
     #[inline]
-    pub(crate) fn activate(&mut self, chart: &CompiledChart, place: NodeIndex) {
-        self.active.insert(place.index());
-        if !matches!(chart.states[place.index()].kind, NodeKind::Or | NodeKind::And) {
-            self.active_leaves.insert(place.index());
+    pub(crate) fn activate(&mut self, chart: &CompiledChart, node: NodeIndex) {
+        self.active.insert(node.index());
+        if !matches!(chart.states[node.index()].kind, NodeKind::Or | NodeKind::And) {
+            self.active_leaves.insert(node.index());
         }
     }
 
     #[inline]
-    pub(crate) fn is_active(&self, place: NodeIndex) -> bool {
-        self.active.contains(place.index())
+    pub(crate) fn is_active(&self, node: NodeIndex) -> bool {
+        self.active.contains(node.index())
     }
 }
 

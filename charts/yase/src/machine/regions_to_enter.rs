@@ -47,7 +47,7 @@ impl<H: Host> Macrostep<'_, H> {
 
 impl MachineState {
     /// Whether a new region waits to be entered.
-    pub(crate) fn is_to_enter(&self, place: NodeIndex) -> bool {
-        self.regions_to_enter.regions.contains(&place)
+    pub(crate) fn is_to_enter(&self, node: NodeIndex) -> bool {
+        self.regions_to_enter.regions.contains(&node)
     }
 }

@@ -19,8 +19,8 @@ impl ScriptMachine for ScriptedMachine<'_> {
     }
 
     fn is_complete(&self, node: NodeId) -> bool {
-        let place = self.chart.layout.place(node);
-        place.is_some_and(|place| self.run.is_active(place) && self.run.is_complete(self.chart, place))
+        let index = self.chart.layout.find_index(node);
+        index.is_some_and(|index| self.run.is_active(index) && self.run.is_complete(self.chart, index))
     }
 
     fn now(&self) -> Timestamp {

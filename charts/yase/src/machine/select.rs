@@ -52,36 +52,35 @@ impl<H: Host> Macrostep<'_, H> {
     }
 
     fn visit_in_order(&mut self, order: &[NodeIndex]) {
-        for &place in order {
-            if self.run.is_active(place) && self.chart.node_sets.eventless.contains(place.index()) {
-                self.consider(place, None);
+        for &node in order {
+            if self.run.is_active(node) && self.chart.node_sets.eventless.contains(node.index()) {
+                self.consider(node, None);
             }
         }
     }
 
     /// Finds the candidate among the paths out of one state that has completed.
-    pub(crate) fn select_at(&mut self, place: NodeIndex) {
+    pub(crate) fn select_at(&mut self, node: NodeIndex) {
         self.run.begin_micro_step();
-        if self.run.is_active(place) {
-            self.consider(place, None);
+        if self.run.is_active(node) {
+            self.consider(node, None);
         }
     }
 
     #[inline]
-    fn consider(&mut self, place: NodeIndex, occurrence: Option<&PoppedEvent>) {
+    fn consider(&mut self, node: NodeIndex, occurrence: Option<&PoppedEvent>) {
         let chart = self.chart;
-        let entry = &chart.selection_table[place.index()];
-        if occurrence.is_none() && (!self.passes(entry.gate, place) || self.is_frozen(place))
-            || !self.lacks_candidate(entry.first, place)
+        let entry = &chart.selection_table[node.index()];
+        if occurrence.is_none() && (!self.passes(entry.gate, node) || self.is_frozen(node))
+            || !self.lacks_candidate(entry.first, node)
             || occurrence.is_none() && self.waits_for_timers(&entry.timer_gates)
         {
             return;
         }
         let branches = if occurrence.is_some() { entry.triggered } else { entry.eventless };
         let is_complete = occurrence.is_none() && entry.gate != CompletionGate::Open;
-        if let Some(found) = self.scan(branches, BranchQuery { state: Some(place), occurrence, is_complete })
-        {
-            self.add_candidate(found, place);
+        if let Some(found) = self.scan(branches, BranchQuery { state: Some(node), occurrence, is_complete }) {
+            self.add_candidate(found, node);
             let compound = &chart.compounds[found.0 as usize];
             compound.sources().for_each(|source| self.mark_decided(source));
         }
@@ -89,13 +88,13 @@ impl<H: Host> Macrostep<'_, H> {
 
     /// Whether the transitions without a trigger need to be examined.
     #[inline]
-    fn passes(&self, gate: CompletionGate, place: NodeIndex) -> bool {
+    fn passes(&self, gate: CompletionGate, node: NodeIndex) -> bool {
         match gate {
             CompletionGate::Open => true,
             CompletionGate::Returned(activity) => {
                 self.run.activities.slot(activity).phase == InvocationPhase::Done
             }
-            CompletionGate::End(end) => self.run.is_active(end) || self.run.vacated.contains(place.index()),
+            CompletionGate::End(end) => self.run.is_active(end) || self.run.vacated.contains(node.index()),
         }
     }
 
@@ -121,13 +120,13 @@ impl<H: Host> Macrostep<'_, H> {
 
     /// Candidates are ordered by their sources, inner ones first, or, for phases, by the leaves for
     /// which they were found.
-    fn add_candidate(&mut self, found: CompoundTransitionId, place: NodeIndex) {
+    fn add_candidate(&mut self, found: CompoundTransitionId, node: NodeIndex) {
         let found_for = match self.chart.semantics_ref().firing {
-            Firing::EachTransition | Firing::EachSegment => place,
+            Firing::EachTransition | Firing::EachSegment => node,
             Firing::Phases => {
-                let (run, first) = (&*self.run, self.chart.layout.first(place).index());
-                let leaf = run.active_leaves.next_without(&run.selection.closed, first, place.index());
-                leaf.map_or(place, |leaf| NodeIndex(leaf as u32))
+                let (run, first) = (&*self.run, self.chart.layout.first(node).index());
+                let leaf = run.active_leaves.next_without(&run.selection.closed, first, node.index());
+                leaf.map_or(node, |leaf| NodeIndex(leaf as u32))
             }
         };
         let selection = &mut self.run.selection;
@@ -144,41 +143,41 @@ impl<H: Host> Macrostep<'_, H> {
     /// Whether it is about to be left, by an interrupting transition or for a held event: it then
     /// takes no transition without an event.
     #[inline]
-    pub(crate) fn is_frozen(&self, place: NodeIndex) -> bool {
-        !(self.run.pending.is_empty() && self.run.queues.held.is_empty()) && self.is_about_to_be_left(place)
+    pub(crate) fn is_frozen(&self, node: NodeIndex) -> bool {
+        !(self.run.pending.is_empty() && self.run.queues.held.is_empty()) && self.is_about_to_be_left(node)
     }
 
     #[inline(never)]
-    fn is_about_to_be_left(&self, place: NodeIndex) -> bool {
-        let leaves = |compound: CompoundTransitionId| self.compound(compound).leaves(place);
-        self.run.has_pending_exit(self.chart, place)
+    fn is_about_to_be_left(&self, node: NodeIndex) -> bool {
+        let leaves = |compound: CompoundTransitionId| self.compound(compound).leaves(node);
+        self.run.has_pending_exit(self.chart, node)
             || self.run.queues.held.iter().any(|held| held.compounds.iter().copied().any(leaves))
     }
 
     /// Whether an active leaf inside has no candidate yet.
     #[inline]
-    fn lacks_candidate(&self, first: NodeIndex, place: NodeIndex) -> bool {
+    fn lacks_candidate(&self, first: NodeIndex, node: NodeIndex) -> bool {
         let selection = &self.run.selection;
         selection.candidates.is_empty()
-            || self.run.active_leaves.next_without(&selection.closed, first.index(), place.index()).is_some()
+            || self.run.active_leaves.next_without(&selection.closed, first.index(), node.index()).is_some()
     }
 
     #[inline]
-    fn mark_decided(&mut self, place: NodeIndex) {
-        let first = self.chart.layout.first(place).index();
+    fn mark_decided(&mut self, node: NodeIndex) {
+        let first = self.chart.layout.first(node).index();
         let run = &mut *self.run;
-        run.selection.closed.add_between(&run.active_leaves, first, place.index());
+        run.selection.closed.add_between(&run.active_leaves, first, node.index());
     }
 
-    pub(crate) fn has_running_inside(&self, place: NodeIndex) -> bool {
-        self.run.running.any_in(self.chart.layout.first(place).index(), place.index())
+    pub(crate) fn has_running_inside(&self, node: NodeIndex) -> bool {
+        self.run.running.any_in(self.chart.layout.first(node).index(), node.index())
     }
 
     /// Whether a candidate begins inside a state.
-    pub(crate) fn can_step_inside(&self, place: NodeIndex) -> bool {
-        let first = self.chart.layout.first(place);
+    pub(crate) fn can_step_inside(&self, node: NodeIndex) -> bool {
+        let first = self.chart.layout.first(node);
         let begins_inside =
-            |&id: &CompoundTransitionId| self.compound(id).sources().any(|it| first <= it && it < place);
+            |&id: &CompoundTransitionId| self.compound(id).sources().any(|it| first <= it && it < node);
         self.run.selection.candidates.iter().any(begins_inside)
     }
 
@@ -259,15 +258,15 @@ impl<H: Host> Macrostep<'_, H> {
 
     /// Records a transition that waits for activities. As among enabled transitions, the innermost
     /// counts.
-    pub(crate) fn note_blocked(&mut self, compound: CompoundTransitionId, place: NodeIndex) {
-        let first = self.chart.layout.first(place).index();
+    pub(crate) fn note_blocked(&mut self, compound: CompoundTransitionId, node: NodeIndex) {
+        let first = self.chart.layout.first(node).index();
         let run = &mut *self.run;
         let mut is_new = false;
-        let mut next = run.active_leaves.next_without(&run.selection.noted, first, place.index());
+        let mut next = run.active_leaves.next_without(&run.selection.noted, first, node.index());
         while let Some(index) = next {
             is_new = true;
             run.selection.noted.insert(index);
-            next = run.active_leaves.next_without(&run.selection.noted, index + 1, place.index());
+            next = run.active_leaves.next_without(&run.selection.noted, index + 1, node.index());
         }
         if is_new {
             run.selection.has_noted = true;
@@ -368,13 +367,13 @@ impl<H: Host> Macrostep<'_, H> {
 
     /// Requests an activity to return. One that is queued but not started receives the request
     /// after its start.
-    fn cancel(&mut self, place: NodeIndex) {
-        let Some(activity) = self.chart.states[place.index()].activity else { return };
+    fn cancel(&mut self, node: NodeIndex) {
+        let Some(activity) = self.chart.states[node.index()].activity else { return };
         let slot = self.run.activities.slot_mut(activity);
         let is_new = !std::mem::replace(&mut slot.cancelled, true);
         let slot = *slot;
         if is_new && slot.phase == InvocationPhase::Running {
-            let activation = self.run.activation(self.chart, place, slot);
+            let activation = self.run.activation(self.chart, node, slot);
             self.host.cancel(activation);
         }
     }

@@ -95,7 +95,7 @@ use crate::semantics::Semantics;
 use crate::timestamp::Timestamp;
 
 pub use error::{RestoreError, RestoreIssue, RestoreIssueKind};
-pub(crate) use paths::{PathTable, event_name, find_event, ways};
+pub(crate) use paths::{PathTable, compounds_by_segments, event_name, find_event};
 pub(crate) use records::can_remember;
 
 /// The version of the format that this crate writes and reads.

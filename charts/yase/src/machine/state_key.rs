@@ -70,8 +70,8 @@ impl Machine {
         // most of a large chart is inactive: of sets and slots only those parts are written that
         // are not empty, behind their places
         for set in [&run.active, &run.vacated, &run.arrived, &run.running_regions] {
-            for (place, word) in set.words().enumerate().filter(|(_, word)| *word != 0) {
-                key.extend([place as u32, word as u32, (word >> 32) as u32]);
+            for (index, word) in set.words().enumerate().filter(|(_, word)| *word != 0) {
+                key.extend([index as u32, word as u32, (word >> 32) as u32]);
             }
             key.push(u32::MAX);
         }
@@ -85,11 +85,11 @@ impl Machine {
         }
         key.push(u32::MAX);
         self.write_queues(key);
-        key.extend(run.completions.iter().map(|place| place.0));
+        key.extend(run.completions.iter().map(|node| node.0));
         for record in &run.records {
             key.push(u32::MAX - u32::from(record.is_known));
             if record.is_known {
-                key.extend(record.nodes.iter().map(|place| place.0));
+                key.extend(record.nodes.iter().map(|node| node.0));
             }
         }
     }
@@ -198,18 +198,18 @@ impl Machine {
 
     /// The activity of a state, if it is running.
     pub fn running_at(&self, node: NodeId) -> Option<Activation> {
-        let place = self.chart.layout.place(node)?;
-        let slot = self.run.activities.slot(self.chart.states[place.index()].activity?);
+        let index = self.chart.layout.find_index(node)?;
+        let slot = self.run.activities.slot(self.chart.states[index.index()].activity?);
         let runs = self.run.status == Status::Running && slot.phase == InvocationPhase::Running;
-        runs.then(|| self.run.activation(&self.chart, place, slot))
+        runs.then(|| self.run.activation(&self.chart, index, slot))
     }
 
     /// The running activities.
     pub fn running(&self) -> Vec<Activation> {
         let chart: &CompiledChart = &self.chart;
         let running = self.run.activities.used().filter_map(|(activity, slot)| {
-            let place = chart.activities[activity];
-            (slot.phase == InvocationPhase::Running).then(|| self.run.activation(chart, place, slot))
+            let node = chart.activities[activity];
+            (slot.phase == InvocationPhase::Running).then(|| self.run.activation(chart, node, slot))
         });
         if self.run.status == Status::Running { running.collect() } else { Vec::new() }
     }

@@ -133,8 +133,8 @@ impl<'a, H: Host> Macrostep<'a, H> {
     /// Examines states that have just completed, where that happens once; then all transitions
     /// without an event.
     fn step_without_event(&mut self) -> Result<bool, StepError> {
-        while let Some(place) = self.run.completions.pop_front() {
-            self.select_at(place);
+        while let Some(node) = self.run.completions.pop_front() {
+            self.select_at(node);
             if !self.run.selection.candidates.is_empty() {
                 return self.take_eventless();
             }
@@ -182,10 +182,10 @@ impl<'a, H: Host> Macrostep<'a, H> {
         self.host.event_taken_from_queue(occurrence.event, occurrence.is_known, occurrence.token);
         self.select(Some(&occurrence));
         let occasion = MicroStepCause::Event(occurrence.event);
-        if let Some(place) = self.claimant(occurrence.event) {
+        if let Some(node) = self.claimant(occurrence.event) {
             self.run.selection.clear();
             self.run.queues.defer(occurrence);
-            self.emit_trace(occasion, Some(place));
+            self.emit_trace(occasion, Some(node));
             return Ok(true);
         }
         if !self.run.selection.candidates.is_empty() {
@@ -206,8 +206,8 @@ impl<'a, H: Host> Macrostep<'a, H> {
         }
         let (chart, selection) = (self.chart, &self.run.selection);
         let found = if selection.candidates.is_empty() { &selection.held } else { &selection.candidates };
-        deferring(chart, &self.run.active, event, |place| {
-            let own = |source| chart.layout.contains(place, source);
+        deferring(chart, &self.run.active, event, |node| {
+            let own = |source| chart.layout.contains(node, source);
             !found.iter().any(|&id| self.compound(id).sources().any(own))
         })
     }
@@ -225,9 +225,9 @@ impl<'a, H: Host> Macrostep<'a, H> {
         if deferral == Deferral::Off {
             return None;
         }
-        let place = deferring(self.chart, &run.active, occurrence.event, |_| true)?;
+        let node = deferring(self.chart, &run.active, occurrence.event, |_| true)?;
         run.queues.defer(occurrence);
-        Some(place)
+        Some(node)
     }
 
     /// Takes the selected transitions.
@@ -264,7 +264,7 @@ impl<'a, H: Host> Macrostep<'a, H> {
             selected: &run.selection.selected,
             preempted: &run.selection.preempted,
             held: &run.selection.held,
-            deferred: deferred.map(|place| self.chart.layout.node(place)),
+            deferred: deferred.map(|node| self.chart.layout.node(node)),
             exits: &run.log.exits,
             effects: &run.log.effects,
             taken: &run.log.taken,
@@ -317,15 +317,15 @@ impl<'a, H: Host> Macrostep<'a, H> {
         }
     }
 
-    fn start_activity(&mut self, place: NodeIndex) {
-        let Some(activity) = self.chart.states[place.index()].activity else { return };
+    fn start_activity(&mut self, node: NodeIndex) {
+        let Some(activity) = self.chart.states[node.index()].activity else { return };
         let slot = self.run.activities.slot_mut(activity);
         if slot.phase != InvocationPhase::Queued {
             return;
         }
         slot.phase = InvocationPhase::Running;
         let slot = *slot;
-        let activation = self.run.activation(self.chart, place, slot);
+        let activation = self.run.activation(self.chart, node, slot);
         self.summary.started += 1;
         self.host.start(activation);
         if slot.cancelled {
@@ -346,10 +346,10 @@ impl<'a, H: Host> Macrostep<'a, H> {
             self.run.active.next_common_without(starts, &self.run.waiting_starts, from, last)
         {
             from = index + 1;
-            let place = NodeIndex(index as u32);
-            if !self.is_frozen(place) {
+            let node = NodeIndex(index as u32);
+            if !self.is_frozen(node) {
                 self.run.waiting_starts.insert(index);
-                let start = self.chart.layout.node(place);
+                let start = self.chart.layout.node(node);
                 self.host.report(self.chart, Notice::StartWaits { start });
             }
         }
@@ -358,8 +358,8 @@ impl<'a, H: Host> Macrostep<'a, H> {
     /// Stops without leaving any state.
     pub(crate) fn halt(&mut self, status: Status) {
         for (activity, slot) in self.run.activities.used() {
-            let place = self.chart.activities[activity];
-            let activation = self.run.activation(self.chart, place, slot);
+            let node = self.chart.activities[activity];
+            let activation = self.run.activation(self.chart, node, slot);
             match slot.phase {
                 InvocationPhase::Running if !slot.cancelled => self.host.cancel(activation),
                 InvocationPhase::Ongoing => self.host.stop(activation),

@@ -41,6 +41,6 @@ impl<H: Host> EvalContext for ScopeView<'_, H> {
     }
 
     fn is_active(&self, state: NodeId) -> bool {
-        self.chart.layout.place(state).is_some_and(|place| self.run.is_active(place))
+        self.chart.layout.find_index(state).is_some_and(|node| self.run.is_active(node))
     }
 }

@@ -100,15 +100,15 @@ impl<H: Host> Macrostep<'_, H> {
     }
 
     fn enter_around(&mut self, step: &SegmentStep) -> Result<(), StepError> {
-        if let Some(TransitionTarget::Node(place)) = step.end {
-            self.bind_timers(place);
+        if let Some(TransitionTarget::Node(node)) = step.end {
+            self.bind_timers(node);
         }
-        for &place in &step.enters {
-            if !self.run.is_active(place) {
-                self.enter(place);
+        for &index in &step.enters {
+            if !self.run.is_active(index) {
+                self.enter(index);
             }
-            if self.chart.states[place.index()].kind == NodeKind::And {
-                self.run.incomplete.push(place);
+            if self.chart.states[index.index()].kind == NodeKind::And {
+                self.run.incomplete.push(index);
             }
             if self.is_over() {
                 return Ok(());
@@ -116,7 +116,7 @@ impl<H: Host> Macrostep<'_, H> {
         }
         match step.end {
             None => Ok(()),
-            Some(TransitionTarget::Node(place)) => self.enter_end(place),
+            Some(TransitionTarget::Node(node)) => self.enter_end(node),
             Some(TransitionTarget::Choice(number)) => {
                 let choice = &self.chart.choices[number];
                 match self.follow_segments(choice.branches, false)? {
@@ -133,11 +133,11 @@ impl<H: Host> Macrostep<'_, H> {
     }
 
     /// Enters what is inside a target, or what a HISTORY stands for.
-    fn enter_end(&mut self, place: NodeIndex) -> Result<(), StepError> {
-        match self.chart.histories.iter().find(|history| history.node == place) {
-            None => self.enter_inside(place),
+    fn enter_end(&mut self, node: NodeIndex) -> Result<(), StepError> {
+        match self.chart.histories.iter().find(|history| history.node == node) {
+            None => self.enter_inside(node),
             Some(history) => {
-                self.run.marked.insert(place.index());
+                self.run.marked.insert(node.index());
                 self.enter_inside(history.owner)
             }
         }

@@ -79,7 +79,7 @@ pub(crate) fn nodes(
 ) -> Vec<NodeMatch> {
     let mut order: Vec<NodeId> = old.statechart().nodes().map(|(id, _)| id).collect();
     let layout = &old.chart.layout;
-    order.sort_by_key(|&node| layout.rank(layout.place_of(node)));
+    order.sort_by_key(|&node| layout.rank(layout.index_of(node)));
     let names = [by_name(old), by_name(new)];
     let mut matches = vec![NodeMatch::Gone(MismatchReason::Missing); order.len()];
     for node in order {
@@ -98,9 +98,9 @@ type NodesByName<'a> = BTreeMap<&'a str, Vec<NodeIndex>>;
 fn by_name(side: NamedChart<'_>) -> NodesByName<'_> {
     let mut names = NodesByName::new();
     for (id, node) in side.statechart().nodes().filter(|(_, node)| !node.name.is_empty()) {
-        names.entry(&node.name).or_default().push(side.chart.layout.place_of(id));
+        names.entry(&node.name).or_default().push(side.chart.layout.index_of(id));
     }
-    names.values_mut().for_each(|places| places.sort_unstable());
+    names.values_mut().for_each(|nodes| nodes.sort_unstable());
     names
 }
 
@@ -148,8 +148,8 @@ fn moved(
         let Some(counterpart) = matches[outer.0 as usize].node() else { continue };
         match (within(old, olds, outer), within(new, news, counterpart)) {
             (_, []) => {}
-            ([_], [place]) => {
-                let found = new.chart.layout.node(*place);
+            ([_], [index]) => {
+                let found = new.chart.layout.node(*index);
                 let same_kind = old.kind(node) == new.kind(found);
                 return if same_kind {
                     NodeMatch::Moved(found)
@@ -164,12 +164,12 @@ fn moved(
 }
 
 /// The indices that lie inside a node.
-fn within<'p>(side: NamedChart<'_>, places: &'p [NodeIndex], outer: NodeId) -> &'p [NodeIndex] {
+fn within<'p>(side: NamedChart<'_>, nodes: &'p [NodeIndex], outer: NodeId) -> &'p [NodeIndex] {
     let layout = &side.chart.layout;
-    let last = layout.place_of(outer);
-    let start = places.partition_point(|&place| place < layout.first(last));
-    let end = places.partition_point(|&place| place < last);
-    &places[start..end]
+    let last = layout.index_of(outer);
+    let start = nodes.partition_point(|&node| node < layout.first(last));
+    let end = nodes.partition_point(|&index| index < last);
+    &nodes[start..end]
 }
 
 /// A node claimed by several old nodes is matched with the one that has its path, or with none.

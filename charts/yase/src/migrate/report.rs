@@ -96,7 +96,7 @@ pub enum Conflict {
     #[error("the plan is not for the chart that runs")]
     OtherChart,
     /// The new chart was compiled for another semantics.
-    #[error("the new chart is read in another way")]
+    #[error("the new chart has other semantics")]
     OtherSemantics,
     /// A step is in progress.
     #[error("a step is under way: a chart is swapped between steps")]

@@ -7,7 +7,7 @@ use crate::ids::CompoundTransitionId;
 use crate::machine::snapshot::{
     ActivityPhase, ActivityRecord, EventName, FailedGuardRecord, HeldEventRecord, HistoryRecord,
     OccurrenceRecord, PendingInterruptRecord, Snapshot, TimerName, TimerRecord, TransitionPath, can_remember,
-    event_name, find_event, ways,
+    compounds_by_segments, event_name, find_event,
 };
 use crate::migrate::matching::NodeMatch;
 use crate::migrate::plan::NodeMapping;
@@ -29,7 +29,7 @@ impl<'a> SnapshotTranslator<'a> {
         SnapshotTranslator {
             plan,
             chart: &plan.new,
-            compounds: ways(&plan.new),
+            compounds: compounds_by_segments(&plan.new),
             report: MigrationReport::default(),
             conflicts: Vec::new(),
         }
@@ -132,7 +132,7 @@ impl<'a> SnapshotTranslator<'a> {
     fn in_document_order(&self, active: BTreeSet<NodeId>) -> Vec<String> {
         let layout = &self.chart.layout;
         let mut nodes: Vec<NodeId> = active.into_iter().collect();
-        nodes.sort_by_key(|&node| layout.rank(layout.place_of(node)));
+        nodes.sort_by_key(|&node| layout.rank(layout.index_of(node)));
         nodes.into_iter().map(|node| self.plan.new_paths.node(node).to_owned()).collect()
     }
 
@@ -190,22 +190,22 @@ impl<'a> SnapshotTranslator<'a> {
 
     fn unfinished(&mut self, old: &Snapshot, new: &mut Snapshot) {
         new.vacated = old.vacated.iter().filter_map(|path| self.path(path)).collect();
-        new.joined = old.joined.iter().filter_map(|way| self.joined(way)).collect();
+        new.joined = old.joined.iter().filter_map(|path| self.joined(path)).collect();
         new.completions = old.completions.iter().filter_map(|path| self.path(path)).collect();
         new.no_branch = old.no_branch.as_ref().and_then(|path| self.path(path));
     }
 
-    fn joined(&mut self, way: &TransitionPath) -> Option<TransitionPath> {
-        let found = self.way(way).filter(|found| {
-            let compound = self.plan.new_paths.find_way(&self.compounds, found);
+    fn joined(&mut self, path: &TransitionPath) -> Option<TransitionPath> {
+        let found = self.transition_path(path).filter(|found| {
+            let compound = self.plan.new_paths.find_compound(&self.compounds, found);
             compound.is_some_and(|compound| self.chart.compounds[compound.0 as usize].arrives().is_some())
         });
         let verdict = match &found {
-            Some(found) if found == way => Disposition::Kept,
+            Some(found) if found == path => Disposition::Kept,
             Some(found) => Disposition::Moved(found.join(", ")),
             None => Disposition::Lost("it leads to nothing that joins regions now"),
         };
-        self.report.add(MigratedItem::Arrival, way.join(", "), verdict);
+        self.report.add(MigratedItem::Arrival, path.join(", "), verdict);
         found
     }
 
@@ -234,21 +234,21 @@ impl<'a> SnapshotTranslator<'a> {
     fn history_nodes(&self, record: &HistoryRecord) -> Option<HistoryRecord> {
         let (chart, layout) = (self.chart, &self.chart.layout);
         let (_, node) = self.node(&record.history)?;
-        let history = chart.histories.iter().find(|history| history.node == layout.place_of(node))?;
+        let history = chart.histories.iter().find(|history| history.node == layout.index_of(node))?;
         let nodes: Option<Vec<NodeId>> =
             record.nodes.iter().map(|path| self.node(path).map(|(_, node)| node)).collect();
-        let mut places = BTreeSet::new();
+        let mut indices = BTreeSet::new();
         for node in nodes? {
-            places.insert(layout.place_of(node));
+            indices.insert(layout.index_of(node));
             if history.is_deep {
-                let around = chart.statechart().ancestors(node).map(|node| layout.place_of(node));
-                places.extend(around.take_while(|&place| place != history.owner));
+                let around = chart.statechart().ancestors(node).map(|node| layout.index_of(node));
+                indices.extend(around.take_while(|&index| index != history.owner));
             }
         }
-        let path = |place| self.plan.new_paths.place(chart, place);
-        can_remember(chart, history, &places).then(|| HistoryRecord {
+        let path = |node| self.plan.new_paths.node_path(chart, node);
+        can_remember(chart, history, &indices).then(|| HistoryRecord {
             history: path(history.node),
-            nodes: places.into_iter().map(path).collect(),
+            nodes: indices.into_iter().map(path).collect(),
         })
     }
 
@@ -332,14 +332,14 @@ impl<'a> SnapshotTranslator<'a> {
     /// for.
     fn held(&mut self, held: &HeldEventRecord) -> Option<HeldEventRecord> {
         let occurrence = self.occurrence(MigratedItem::HeldEvent, &held.occurrence)?;
-        let ways = held.ways.iter().filter_map(|way| self.way(way)).collect();
+        let ways = held.ways.iter().filter_map(|way| self.transition_path(way)).collect();
         Some(HeldEventRecord { occurrence, ways, offer: held.offer || !self.plan.is_same() })
     }
 
     fn pending(&mut self, record: &PendingInterruptRecord) -> Option<PendingInterruptRecord> {
         let name = record.way.join(", ");
         let is_known = record.event.as_ref().is_none_or(|event| find_event(self.chart, event).is_some());
-        let Some(way) = self.way(&record.way).filter(|_| is_known) else {
+        let Some(way) = self.transition_path(&record.way).filter(|_| is_known) else {
             self.conflicts.push(Conflict::PendingGone(name));
             return None;
         };
@@ -348,8 +348,8 @@ impl<'a> SnapshotTranslator<'a> {
         Some(PendingInterruptRecord { way, event: record.event.clone() })
     }
 
-    fn way(&self, way: &TransitionPath) -> Option<TransitionPath> {
-        let segments: Option<Vec<TransitionId>> = way.iter().map(|segment| self.segment(segment)).collect();
+    fn transition_path(&self, path: &TransitionPath) -> Option<TransitionPath> {
+        let segments: Option<Vec<TransitionId>> = path.iter().map(|segment| self.segment(segment)).collect();
         let segments = segments?;
         self.compounds.get(segments.as_slice())?;
         Some(segments.iter().map(|&segment| self.plan.new_paths.segment(segment).to_owned()).collect())
@@ -371,7 +371,7 @@ impl<'a> SnapshotTranslator<'a> {
         let starts = old.waiting_starts.iter().filter_map(|path| self.path(path)).filter(is_start);
         new.waiting_starts = starts.filter(|path| new.is_active(path)).collect();
         new.written = old.written.iter().filter_map(|path| self.region(path)).collect();
-        new.bound.recent = old.bound.recent.iter().filter_map(|way| self.way(way)).collect();
+        new.bound.recent = old.bound.recent.iter().filter_map(|path| self.transition_path(path)).collect();
         new.erred_guards = old.erred_guards.iter().filter_map(|record| self.erred_guard(record)).collect();
         let inherit = old.to_inherit.iter().filter_map(|path| self.region(path));
         new.to_inherit.extend(inherit);

@@ -205,9 +205,9 @@ impl PathTree {
 
     fn path(&self, index: usize) -> String {
         let around = |index: &usize| self.parents.get(*index).copied().flatten();
-        let way = std::iter::successors(Some(index), around);
+        let ancestors = std::iter::successors(Some(index), around);
         let mut segments: Vec<&str> =
-            way.filter_map(|index| self.segments.get(index)).map(String::as_str).collect();
+            ancestors.filter_map(|index| self.segments.get(index)).map(String::as_str).collect();
         segments.reverse();
         segments.join("/")
     }

@@ -199,10 +199,10 @@ fn read(bytes: &[u8], format: Format) -> Result<Log, CommandFailure> {
 
 impl LogArguments {
     /// Refuses robots that do not exist.
-    fn check_robots(&self, place: &str, hosts: &[&str]) -> Result<(), CommandFailure> {
+    fn check_robots(&self, source: &str, hosts: &[&str]) -> Result<(), CommandFailure> {
         match self.robots.iter().find(|robot| !hosts.contains(&robot.as_str())) {
             Some(unknown) => {
-                Err(CommandFailure::unknown_name(place, "robot", unknown, hosts.iter().copied()))
+                Err(CommandFailure::unknown_name(source, "robot", unknown, hosts.iter().copied()))
             }
             None => Ok(()),
         }

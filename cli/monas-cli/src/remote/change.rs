@@ -51,7 +51,7 @@ pub(crate) fn print_outcome(
 
 fn line(finding: &Finding, message: &str) -> String {
     let Finding { code, hint, file, line, column, .. } = finding;
-    let place = match (file.is_empty(), line) {
+    let position = match (file.is_empty(), line) {
         (true, _) => String::new(),
         (false, 0) => format!("{file}: "),
         (false, line) => format!("{file}:{line}:{column}: "),
@@ -62,7 +62,7 @@ fn line(finding: &Finding, message: &str) -> String {
         (false, true) => String::new(),
     };
     let hint = if hint.is_empty() { String::new() } else { format!("\n  help: {hint}") };
-    format!("{place}{kind}{message}{hint}")
+    format!("{position}{kind}{message}{hint}")
 }
 
 fn object(finding: &Finding) -> serde_json::Value {

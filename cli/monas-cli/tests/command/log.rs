@@ -25,7 +25,7 @@ fn a_run_is_logged_as_configured() {
     let log = || fs::read_to_string(folder.path().join("a.log")).expect("a log");
     let first = log();
     for line in [
-        "    0.500000 s DEBUG [blue-1 Goalie] no way out",
+        "    0.500000 s DEBUG [blue-1 Goalie] no outgoing transition",
         "    1.000000 s INFO  [red-1 Goalie] stopped: the run has ended",
     ] {
         assert!(first.contains(line), "{first}");
@@ -70,7 +70,7 @@ fn lines_are_on_the_tape_between_the_messages_of_their_moment_and_what_is_replay
     assert_eq!(hash(&quiet.out), hash(&first), "the run is the same whatever is logged");
     let lines = on_tape(&one);
     assert!(
-        lines.iter().any(|(_, name, words)| name == "Goalie" && words.starts_with("no way out")),
+        lines.iter().any(|(_, name, words)| name == "Goalie" && words.starts_with("no outgoing transition")),
         "{lines:?}"
     );
     let replayed = monas(&["tape", "replay", &one, "--verify"]);

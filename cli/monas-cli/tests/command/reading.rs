@@ -114,10 +114,10 @@ fn words(line: &str) -> Vec<String> {
     let mut words = vec![String::new()];
     for (number, part) in line.split('\'').enumerate() {
         let is_quoted = number % 2 == 1;
-        for (place, word) in part.split(' ').enumerate() {
+        for (index, word) in part.split(' ').enumerate() {
             match words.last_mut() {
-                Some(last) if is_quoted && place > 0 => last.extend([" ", word]),
-                Some(last) if place == 0 => last.push_str(word),
+                Some(last) if is_quoted && index > 0 => last.extend([" ", word]),
+                Some(last) if index == 0 => last.push_str(word),
                 _ => words.push(word.to_owned()),
             }
         }

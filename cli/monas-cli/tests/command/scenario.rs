@@ -81,8 +81,8 @@ fn each_step_is_shown_with_what_differs_from_it() {
         [&"start", &"return Stand", &"wait 1s"]
     );
     let differs = |line: usize, text: &str| {
-        let place = format!("a.scenario:{line}: {text}");
-        assert!(lines.iter().any(|line| line.trim().ends_with(&place)), "{place} is not in\n{out}");
+        let position = format!("a.scenario:{line}: {text}");
+        assert!(lines.iter().any(|line| line.trim().ends_with(&position)), "{position} is not in\n{out}");
     };
     differs(4, "expected `starts Stand`, but started are: SendCalibration");
     assert!(out.contains("a.scenario:7: expected `in Stand`, but active are: RobotController, LedHandler, MotionController, SendCalibration"), "{out}");
@@ -108,11 +108,11 @@ fn unknown_names_are_reported_with_positions() {
     assert_eq!(code, Some(3), "{err}");
     let found: Vec<Value> =
         err.lines().map(|line| serde_json::from_str(line).expect("an object a line")).collect();
-    let places: Vec<(u64, u64)> = found
+    let positions: Vec<(u64, u64)> = found
         .iter()
         .map(|it| (it["line"].as_u64().unwrap_or_default(), it["column"].as_u64().unwrap_or_default()))
         .collect();
-    assert_eq!(places, [(3, 3), (4, 8), (5, 6)], "{err}");
+    assert_eq!(positions, [(3, 3), (4, 8), (5, 6)], "{err}");
     for (found, near) in found.iter().zip(["Ball", "found", "RightDive"]) {
         assert!(found["hint"].as_str().is_some_and(|hint| hint.contains(near)), "{found}");
     }

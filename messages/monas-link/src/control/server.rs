@@ -197,14 +197,14 @@ fn serve(mut stream: UnixStream, state: Arc<ServerState>) -> Option<ToolConnecti
         let _ = frame::write(&refused("this run belongs to another user"), &mut stream);
         return None;
     }
-    let place = ConnectionSlot::acquire(state);
-    let Some(place) = place else {
+    let slot = ConnectionSlot::acquire(state);
+    let Some(slot) = slot else {
         let _ = frame::write(&refused(format!("{CLIENT_LIMIT} tools look at this run already")), &mut stream);
         return None;
     };
     let other = stream.try_clone().ok()?;
-    let thread = thread::Builder::new().name(format!("{} client", place.0.name));
-    let thread = thread.spawn(move || place.0.serve_connection(&stream)).ok()?;
+    let thread = thread::Builder::new().name(format!("{} client", slot.0.name));
+    let thread = thread.spawn(move || slot.0.serve_connection(&stream)).ok()?;
     Some(ToolConnection { stream: other, thread })
 }
 
@@ -226,9 +226,9 @@ struct ConnectionSlot(Arc<ServerState>);
 
 impl ConnectionSlot {
     fn acquire(state: Arc<ServerState>) -> Option<ConnectionSlot> {
-        let place = ConnectionSlot(state);
+        let slot = ConnectionSlot(state);
         // The excess slot is released at once.
-        (place.0.clients.fetch_add(1, Ordering::SeqCst) < CLIENT_LIMIT).then_some(place)
+        (slot.0.clients.fetch_add(1, Ordering::SeqCst) < CLIENT_LIMIT).then_some(slot)
     }
 }
 

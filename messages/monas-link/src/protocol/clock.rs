@@ -51,13 +51,15 @@ impl ClockFilter {
     ) {
         let [sent, heard, answered, received] =
             [sent, heard, answered, received].map(|moment| i128::from(moment.as_nanos()));
-        let way = (received - sent) - (answered - heard);
+        let round_trip = (received - sent) - (answered - heard);
         let ahead = ((heard - sent) + (answered - received)) / 2;
-        if received < sent || answered < heard || way < -LONGEST_STEP {
+        if received < sent || answered < heard || round_trip < -LONGEST_STEP {
             return;
         }
-        let (Ok(ahead), Ok(way)) = (i64::try_from(ahead), u64::try_from(way.abs())) else { return };
-        self.measured[self.next] = Some(ClockOffset { ahead, round_trip: way });
+        let (Ok(ahead), Ok(round_trip)) = (i64::try_from(ahead), u64::try_from(round_trip.abs())) else {
+            return;
+        };
+        self.measured[self.next] = Some(ClockOffset { ahead, round_trip });
         self.next = (self.next + 1) % MEASUREMENTS;
     }
 

@@ -207,7 +207,7 @@ impl Node {
         let outgoing = send.iter().map(outgoing).collect();
         let spending = budget.map(BudgetWindow::new);
         let slowest = spending.as_ref().map_or(Duration::ZERO, BudgetWindow::shortest_beat);
-        let wanted = receive.iter().enumerate().map(|(place, topic)| (topic.path.clone(), place)).collect();
+        let wanted = receive.iter().enumerate().map(|(index, topic)| (topic.path.clone(), index)).collect();
         let node = Node {
             host: host.into(),
             incarnation,

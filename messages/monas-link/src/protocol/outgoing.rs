@@ -112,8 +112,8 @@ impl OutgoingStream {
     }
 
     fn resend(&mut self, number: u64, to: Arc<str>, now: Timestamp) -> Option<OutgoingBatch> {
-        let place = self.place(number)?;
-        let kept = &mut self.retained[place];
+        let index = self.index_of(number)?;
+        let kept = &mut self.retained[index];
         kept.sent_again = Some(now);
         self.counted.resent += 1;
         self.counted.bytes += (kept.stamp.len() + kept.payload.len()) as u64;
@@ -121,7 +121,7 @@ impl OutgoingStream {
     }
 
     fn send_new(&mut self) -> Option<OutgoingBatch> {
-        let kept = &self.retained[self.place(self.next)?];
+        let kept = &self.retained[self.index_of(self.next)?];
         let batch = OutgoingBatch { to: None, stamp: kept.stamp.clone(), payload: kept.payload.clone() };
         self.counted.sent += 1;
         self.counted.bytes += (batch.stamp.len() + batch.payload.len()) as u64;
@@ -133,9 +133,9 @@ impl OutgoingStream {
     }
 
     /// The index of the message with a number.
-    fn place(&self, number: u64) -> Option<usize> {
-        let place = usize::try_from(number.checked_sub(self.retained.front()?.number)?).ok()?;
-        (place < self.retained.len()).then_some(place)
+    fn index_of(&self, number: u64) -> Option<usize> {
+        let index = usize::try_from(number.checked_sub(self.retained.front()?.number)?).ok()?;
+        (index < self.retained.len()).then_some(index)
     }
 
     /// Records that `peer` lacks messages `first..=last`. A message retransmitted less than

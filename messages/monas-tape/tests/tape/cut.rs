@@ -28,9 +28,9 @@ fn damage_inside_a_chunk_is_noticed() {
     let bytes = recorded(3);
     let whole = readable(bytes.clone());
     // The string is in the schema at the beginning of the first chunk.
-    let place = bytes.windows(9).position(|text| text == b"tape.test").unwrap();
+    let index = bytes.windows(9).position(|text| text == b"tape.test").unwrap();
     let mut damaged = bytes;
-    damaged[place] ^= 1;
+    damaged[index] ^= 1;
     let recording = Recording::from_bytes(damaged);
     let mut messages = recording.messages().unwrap();
     let error = messages.next().unwrap().unwrap_err();
@@ -46,8 +46,8 @@ fn damage_inside_an_attachment_is_noticed() {
     tape.attach("match.xml", "text/xml", b"<match/>").unwrap();
     tape.finish().unwrap();
     let mut bytes = output.bytes();
-    let place = bytes.windows(8).position(|text| text == b"<match/>").unwrap();
-    bytes[place] ^= 1;
+    let index = bytes.windows(8).position(|text| text == b"<match/>").unwrap();
+    bytes[index] ^= 1;
     let recording = Recording::from_bytes(bytes);
     let errors = recording.contents().unwrap().filter_map(Result::err).map(|error| error.to_string());
     let expected = "the tape is damaged: the checksum of the attachment `match.xml` is wrong";
@@ -103,10 +103,10 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 200, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn damage_is_met_without_a_panic(places in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..8)) {
+    fn damage_is_met_without_a_panic(damages in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..8)) {
         let mut bytes = recorded(3);
-        for (place, value) in places {
-            let index = place.index(bytes.len());
+        for (position, value) in damages {
+            let index = position.index(bytes.len());
             bytes[index] = value;
         }
         readable(bytes);

@@ -61,8 +61,8 @@ fn records_after_damage_are_kept() {
     let whole = tape(&path("a.mcap"), &["one"], 60);
     let mut bytes = std::fs::read(path("a.mcap")).unwrap();
     let message = whole.messages().unwrap().nth(90).unwrap().unwrap();
-    let place = bytes.windows(message.bytes.len()).position(|window| window == message.bytes).unwrap();
-    bytes[place + 4] ^= 0xff;
+    let index = bytes.windows(message.bytes.len()).position(|window| window == message.bytes).unwrap();
+    bytes[index + 4] ^= 0xff;
     std::fs::write(path("a.mcap"), bytes).unwrap();
     let recovery = recover(path("a.mcap"), path("a.mcap")).unwrap();
     let expected =
@@ -80,8 +80,8 @@ fn messages_behind_a_damaged_first_chunk_have_the_channels_of_the_summary() {
     let whole = tape(&path("a.mcap"), &["one"], 60);
     let mut bytes = std::fs::read(path("a.mcap")).unwrap();
     let message = whole.messages().unwrap().next().unwrap().unwrap();
-    let place = bytes.windows(message.bytes.len()).position(|window| window == message.bytes).unwrap();
-    bytes[place + 4] ^= 0xff;
+    let index = bytes.windows(message.bytes.len()).position(|window| window == message.bytes).unwrap();
+    bytes[index + 4] ^= 0xff;
     std::fs::write(path("a.mcap"), bytes).unwrap();
     let recovery = recover(path("a.mcap"), path("a.mcap")).unwrap();
     let expected =

@@ -130,10 +130,10 @@ pub(crate) fn nearest(selection: &Selection) {
     });
     reader.process_messages(Timestamp::from_nanos(256_000));
     // Times in random order, to defeat branch prediction.
-    let mut place = 1_u64;
+    let mut random = 1_u64;
     let mut moment = move || {
-        place = place.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        Timestamp::from_nanos((place >> 33) % 256_000)
+        random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        Timestamp::from_nanos((random >> 33) % 256_000)
     };
     let mut chance = moment;
     let contestants: Vec<Contestant<'_>> = vec![

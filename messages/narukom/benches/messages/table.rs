@@ -35,10 +35,10 @@ pub(crate) fn run(
     }
     let mut figures = vec![Vec::new(); contestants.len()];
     for round in 0..=selection.rounds {
-        for (place, (_, contestant)) in contestants.iter_mut().enumerate() {
+        for (index, (_, contestant)) in contestants.iter_mut().enumerate() {
             let figure = contestant();
             if round > 0 {
-                figures[place].push(figure);
+                figures[index].push(figure);
             }
         }
     }

@@ -16,15 +16,15 @@ impl Blackboard {
         }
         self.now = other.now;
         self.window = other.window;
-        for place in 0..self.attached.get_mut().len() {
-            let channel = self.attached.get_mut()[place];
+        for index in 0..self.attached.get_mut().len() {
+            let channel = self.attached.get_mut()[index];
             self.adopt_inbox(channel, other);
         }
         for channel in other.attached.borrow().iter() {
             self.inherit_inbox(*channel, other);
         }
-        for place in 0..self.written.len() {
-            self.hide(self.written[place]);
+        for position in 0..self.written.len() {
+            self.hide(self.written[position]);
         }
         for slot in &other.written {
             self.adopt_outbox(*slot, other);

@@ -72,7 +72,7 @@ impl Blackboard {
     /// Whether the topic has been read here, of any host.
     pub fn is_read(&self, slot: TopicSlot) -> bool {
         let entry = self.entries.get(slot.index());
-        entry.is_some_and(|place| place.inboxes().any(|reading| reading.is_read()))
+        entry.is_some_and(|entry| entry.inboxes().any(|reading| reading.is_read()))
     }
 
     /// The topics that have been read here, of any host, in order of first read.

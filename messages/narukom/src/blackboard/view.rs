@@ -151,7 +151,7 @@ impl<'a> HostView<'a> {
     /// Like [`lost`](HostView::lost), by slot.
     pub fn lost_at(self, slot: TopicSlot) -> u64 {
         let entry = self.blackboard.entries.get(slot.index());
-        entry.and_then(|place| place.inbox(self.host)).map_or(0, Inbox::lost)
+        entry.and_then(|entry| entry.inbox(self.host)).map_or(0, Inbox::lost)
     }
 
     /// The topics of the messages of the last delivery, one per message, in order of arrival.

@@ -45,11 +45,11 @@ fn step() -> impl Strategy<Value = Step> {
     let board = 0..BOARDS;
     let span = 0..KINDS.len();
     prop_oneof![
-        4 => (board.clone(), span.clone()).prop_map(|(board, way)| Step::Write(board, way)),
-        1 => (board.clone(), span.clone(), 1..90_usize).prop_map(|(board, way, count)| Step::Burst(board, way, count)),
+        4 => (board.clone(), span.clone()).prop_map(|(board, index)| Step::Write(board, index)),
+        1 => (board.clone(), span.clone(), 1..90_usize).prop_map(|(board, position, count)| Step::Burst(board, position, count)),
         3 => board.clone().prop_map(Step::Publish),
         3 => board.clone().prop_map(Step::Process),
-        4 => (board.clone(), span).prop_map(|(board, way)| Step::Read(board, way)),
+        4 => (board.clone(), span).prop_map(|(board, kind)| Step::Read(board, kind)),
         1 => (board.clone(), board).prop_map(|(board, other)| Step::Adopt(board, other)),
     ]
 }
@@ -107,14 +107,14 @@ impl TopicState {
         self.inherited.iter().copied().chain(own)
     }
 
-    fn accept(&mut self, way: TestedKind, entry: PublishedMessage, reader: usize) {
-        match way {
+    fn accept(&mut self, kind: TestedKind, entry: PublishedMessage, reader: usize) {
+        match kind {
             TestedKind::State => self.items = vec![entry.value],
             TestedKind::Signal if entry.board == reader && entry.nth <= self.seen => {}
             TestedKind::Signal => self.items.push(entry.value),
             TestedKind::Data => {
                 self.items.push(entry.value);
-                let surplus = self.items.len().saturating_sub(way.depth());
+                let surplus = self.items.len().saturating_sub(kind.depth());
                 self.items.drain(..surplus);
             }
         }
@@ -122,28 +122,28 @@ impl TopicState {
 }
 
 impl Model {
-    fn write(&mut self, board: usize, way: usize, value: u64) {
-        let state = &mut self.boards[board].states[way];
+    fn write(&mut self, board: usize, index: usize, value: u64) {
+        let state = &mut self.boards[board].states[index];
         state.written += 1;
         state.own.push(OwnMessage { value, nth: state.written, sent: false, hidden: false });
-        self.boards[board].outbox.push(way);
+        self.boards[board].outbox.push(index);
     }
 
     fn publish(&mut self, board: usize) {
-        for way in std::mem::take(&mut self.boards[board].outbox) {
-            let state = &mut self.boards[board].states[way];
+        for index in std::mem::take(&mut self.boards[board].outbox) {
+            let state = &mut self.boards[board].states[index];
             let own = state.own.iter_mut().find(|own| !own.sent).unwrap();
             own.sent = true;
             self.order += 1;
-            self.logs[way].push(PublishedMessage {
+            self.logs[index].push(PublishedMessage {
                 order: self.order,
                 board,
                 nth: own.nth,
                 value: own.value,
             });
         }
-        for (way, state) in KINDS.iter().zip(&mut self.boards[board].states) {
-            let kept = if *way == TestedKind::State { 1 } else { way.depth() };
+        for (kind, state) in KINDS.iter().zip(&mut self.boards[board].states) {
+            let kept = if *kind == TestedKind::State { 1 } else { kind.depth() };
             while state.own.len() > kept && state.own[0].sent {
                 state.own.remove(0);
             }
@@ -151,16 +151,16 @@ impl Model {
     }
 
     /// The messages of a topic that the hub still holds, and the index of the first.
-    fn ring(&self, way: usize) -> (usize, &[PublishedMessage]) {
-        let first = self.logs[way].len().saturating_sub(KINDS[way].depth());
-        (first, &self.logs[way][first..])
+    fn ring(&self, index: usize) -> (usize, &[PublishedMessage]) {
+        let first = self.logs[index].len().saturating_sub(KINDS[index].depth());
+        (first, &self.logs[index][first..])
     }
 
     fn process(&mut self, board: usize) {
-        for (way, kind) in KINDS.into_iter().enumerate() {
-            let (first, ring) = self.ring(way);
+        for (index, kind) in KINDS.into_iter().enumerate() {
+            let (first, ring) = self.ring(index);
             let ring = ring.to_vec();
-            let state = &mut self.boards[board].states[way];
+            let state = &mut self.boards[board].states[index];
             state.own.retain(|own| !own.sent);
             state.inherited.clear();
             if kind == TestedKind::Signal {
@@ -182,36 +182,36 @@ impl Model {
         board.delivered = self.order;
     }
 
-    fn attach(&mut self, board: usize, way: usize) {
-        let (first, ring) = self.ring(way);
+    fn attach(&mut self, board: usize, index: usize) {
+        let (first, ring) = self.ring(index);
         let (ring, known) = (ring.to_vec(), self.boards[board].clone());
-        let state = &mut self.boards[board].states[way];
-        let begin = if KINDS[way] == TestedKind::Signal { known.since } else { 0 };
+        let state = &mut self.boards[board].states[index];
+        let begin = if KINDS[index] == TestedKind::Signal { known.since } else { 0 };
         state.attached = true;
         state.lost = 0;
         state.items.clear();
         for entry in ring.iter().filter(|entry| entry.order > begin && entry.order <= known.delivered) {
-            state.accept(KINDS[way], *entry, board);
+            state.accept(KINDS[index], *entry, board);
         }
         // If the hub no longer holds the state of that time, begin with the oldest that it holds.
-        let had_a_value = self.logs[way].first().is_some_and(|entry| entry.order <= known.delivered);
-        let state = &mut self.boards[board].states[way];
-        if KINDS[way] == TestedKind::State && state.items.is_empty() && had_a_value {
+        let had_a_value = self.logs[index].first().is_some_and(|entry| entry.order <= known.delivered);
+        let state = &mut self.boards[board].states[index];
+        if KINDS[index] == TestedKind::State && state.items.is_empty() && had_a_value {
             state.items = vec![ring[0].value];
         }
         let late = |entry: &PublishedMessage| entry.order > known.delivered.max(begin);
         state.cursor = first + ring.iter().position(late).unwrap_or(ring.len());
     }
 
-    fn read(&mut self, board: usize, way: usize) -> (Vec<u64>, u64) {
-        if !self.boards[board].states[way].attached {
-            self.attach(board, way);
+    fn read(&mut self, board: usize, index: usize) -> (Vec<u64>, u64) {
+        if !self.boards[board].states[index].attached {
+            self.attach(board, index);
         }
-        let state = &mut self.boards[board].states[way];
+        let state = &mut self.boards[board].states[index];
         state.seen = state.written;
         let mut values = state.items.clone();
         values.extend(state.visible_own());
-        let depth = match KINDS[way] {
+        let depth = match KINDS[index] {
             TestedKind::State => 1,
             TestedKind::Signal => usize::MAX,
             TestedKind::Data => 4,
@@ -223,26 +223,26 @@ impl Model {
         let other = self.boards[other].clone();
         self.boards[board].since = other.since;
         self.boards[board].delivered = other.delivered;
-        for (way, theirs) in other.states.iter().enumerate() {
-            let state = &mut self.boards[board].states[way];
+        for (index, theirs) in other.states.iter().enumerate() {
+            let state = &mut self.boards[board].states[index];
             state.own.iter_mut().for_each(|own| own.hidden = true);
             state.inherited.clear();
-            if KINDS[way] != TestedKind::Signal {
+            if KINDS[index] != TestedKind::Signal {
                 state.inherited.extend(theirs.visible_own());
             }
             if theirs.attached {
                 (state.attached, state.cursor, state.lost) = (true, theirs.cursor, theirs.lost);
                 state.items = theirs.items.clone();
             } else if state.attached {
-                self.attach(board, way);
+                self.attach(board, index);
             }
         }
     }
 }
 
 /// The real blackboard: the values and the losses of a topic.
-fn read(board: &Blackboard, way: usize) -> (Vec<u64>, u64) {
-    match KINDS[way] {
+fn read(board: &Blackboard, index: usize) -> (Vec<u64>, u64) {
+    match KINDS[index] {
         TestedKind::State => {
             (board.read(STATE).map(|mark| mark.number).into_iter().collect(), board.lost(STATE))
         }
@@ -254,8 +254,8 @@ fn read(board: &Blackboard, way: usize) -> (Vec<u64>, u64) {
     }
 }
 
-fn write(board: &mut Blackboard, way: usize, value: u64) {
-    let written = match KINDS[way] {
+fn write(board: &mut Blackboard, index: usize, value: u64) {
+    let written = match KINDS[index] {
         TestedKind::State => board.publish(STATE, Mark::new(value)),
         TestedKind::Signal => board.publish(SIGNAL, Mark::new(value)),
         TestedKind::Data => board.publish(DATA, Mark::new(value)),
@@ -277,10 +277,10 @@ impl Comparison {
         Comparison { boards, model: Model::default(), value: 0 }
     }
 
-    fn write(&mut self, board: usize, way: usize) {
+    fn write(&mut self, board: usize, index: usize) {
         self.value += 1;
-        write(&mut self.boards[board], way, self.value);
-        self.model.write(board, way, self.value);
+        write(&mut self.boards[board], index, self.value);
+        self.model.write(board, index, self.value);
     }
 
     fn publish(&mut self, board: usize, time: u64) {
@@ -290,9 +290,9 @@ impl Comparison {
 
     fn take(&mut self, step: Step, time: u64) {
         match step {
-            Step::Write(board, way) => self.write(board, way),
-            Step::Burst(board, way, count) => {
-                (0..count).for_each(|_| self.write(board, way));
+            Step::Write(board, index) => self.write(board, index),
+            Step::Burst(board, position, count) => {
+                (0..count).for_each(|_| self.write(board, position));
                 self.publish(board, time);
             }
             Step::Publish(board) => self.publish(board, time),
@@ -300,12 +300,12 @@ impl Comparison {
                 self.boards[board].process_messages(at(time));
                 self.model.process(board);
             }
-            Step::Read(board, way) => {
+            Step::Read(board, kind) => {
                 assert_eq!(
-                    read(&self.boards[board], way),
-                    self.model.read(board, way),
+                    read(&self.boards[board], kind),
+                    self.model.read(board, kind),
                     "{board} {:?}",
-                    KINDS[way]
+                    KINDS[kind]
                 );
             }
             Step::Adopt(board, other) => {
@@ -329,8 +329,8 @@ proptest! {
             comparison.take(*step, time);
         }
         for board in 0..BOARDS {
-            for way in 0..KINDS.len() {
-                comparison.take(Step::Read(board, way), 1000);
+            for index in 0..KINDS.len() {
+                comparison.take(Step::Read(board, index), 1000);
             }
         }
     }

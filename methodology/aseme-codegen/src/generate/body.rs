@@ -75,7 +75,7 @@ impl GeneratedFunctions {
         let input = parameter(&body.value);
         self.text.push(format!(
             "/// {}\npub(crate) fn {name}<'a>({input}: &GuardInput<'a>) -> Computed<'a> {{\n    {}\n}}\n",
-            place(chart, at),
+            action_description(chart, at),
             body.value.laid_out(4, 4, 0)
         ));
         let put = match self.puts.get(&(body.target.clone(), body.field.clone())) {
@@ -209,7 +209,7 @@ fn node_description(chart: &CompiledChart, node: NodeId) -> String {
     }
 }
 
-fn place(chart: &CompiledChart, (location, index): (ActionLocation, usize)) -> String {
+fn action_description(chart: &CompiledChart, (location, index): (ActionLocation, usize)) -> String {
     let statechart = chart.statechart();
     let (actions, text) = match location {
         ActionLocation::Transition(id) => {

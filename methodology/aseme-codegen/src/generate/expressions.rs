@@ -299,11 +299,11 @@ impl ExpressionWriter<'_, '_, '_> {
             false => RustCode::call("given", vec![code]),
         };
         let Some((last, outer)) = names.split_last() else { return Err(self.not_expressible()) };
-        let place = outer
+        let target = outer
             .iter()
-            .fold("message".to_owned(), |place, name| format!("inside_mut(&mut {place}.{})", field(name)));
+            .fold("message".to_owned(), |target, name| format!("inside_mut(&mut {target}.{})", field(name)));
         let arguments = vec![
-            RustCode::Plain(format!("&mut {place}.{}", field(last))),
+            RustCode::Plain(format!("&mut {target}.{}", field(last))),
             RustCode::plain("value"),
             RustCode::Plain(literal(last)),
         ];

@@ -7,14 +7,14 @@ use crate::document::{Comments, Item, ItemDocument, Line};
 /// Copies the comments of an older text: each goes to the equal line of the item with the same
 /// header, else to that item, else to the end.
 pub(crate) fn transfer_comments(old: &ItemDocument, new: &mut ItemDocument) {
-    let mut places: BTreeMap<(String, String, usize), usize> = BTreeMap::new();
+    let mut indices: BTreeMap<(String, String, usize), usize> = BTreeMap::new();
     let mut seen = BTreeMap::new();
     for (index, item) in new.items.iter().enumerate() {
-        places.insert(key(item, &mut seen), index);
+        indices.insert(key(item, &mut seen), index);
     }
     let mut seen = BTreeMap::new();
     for item in &old.items {
-        match places.get(&key(item, &mut seen)) {
+        match indices.get(&key(item, &mut seen)) {
             Some(&index) => transfer_item_comments(item, &mut new.items[index]),
             None => new.tail.extend(all(item)),
         }
@@ -32,15 +32,15 @@ fn key(item: &Item, seen: &mut BTreeMap<(String, String), usize>) -> (String, St
 
 fn transfer_item_comments(old: &Item, new: &mut Item) {
     add(&old.comments, &mut new.comments);
-    let mut places: BTreeMap<(String, usize), usize> = BTreeMap::new();
+    let mut indices: BTreeMap<(String, usize), usize> = BTreeMap::new();
     let mut seen = BTreeMap::new();
     for (index, line) in new.lines.iter().enumerate() {
-        places.insert(line_key(line, &mut seen), index);
+        indices.insert(line_key(line, &mut seen), index);
     }
     let mut seen = BTreeMap::new();
     let mut homeless = Vec::new();
     for line in &old.lines {
-        match places.get(&line_key(line, &mut seen)) {
+        match indices.get(&line_key(line, &mut seen)) {
             Some(&index) => add(&line.comments, &mut new.lines[index].comments),
             None => homeless.extend(texts(&line.comments)),
         }

@@ -137,7 +137,7 @@ fn nearest(chart: &Statechart) -> Statechart {
 }
 
 fn is_plain_start(transitions: &[&Transition]) -> bool {
-    matches!(transitions, [way] if way.expression.guard.is_none() && way.expression.trigger.is_none())
+    matches!(transitions, [transition] if transition.expression.guard.is_none() && transition.expression.trigger.is_none())
 }
 
 fn plain_node(node: &Node, name: &str) -> Node {

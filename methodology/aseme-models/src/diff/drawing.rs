@@ -20,15 +20,15 @@ pub struct DiffDrawing {
 /// Draws two charts and their difference in one chart.
 pub fn picture(before: &Statechart, after: &Statechart, difference: &ChartDifference) -> DiffDrawing {
     let mut picture = DiffDrawing { chart: after.clone(), marks: Highlights::default() };
-    let mut places: BTreeMap<NodeId, NodeId> = BTreeMap::new();
+    let mut nodes: BTreeMap<NodeId, NodeId> = BTreeMap::new();
     for (id, node) in before.nodes() {
         if let Some(later) = difference.pairs.later(id) {
-            places.insert(id, later);
+            nodes.insert(id, later);
             continue;
         }
         // parents precede their children, so the parent was added
-        let parent = node.parent.and_then(|parent| places.get(&parent)).copied().unwrap_or(Statechart::ROOT);
-        places.insert(id, picture.chart.add(parent, node.clone()));
+        let parent = node.parent.and_then(|parent| nodes.get(&parent)).copied().unwrap_or(Statechart::ROOT);
+        nodes.insert(id, picture.chart.add(parent, node.clone()));
     }
     for change in &difference.changes {
         let Some(element) = change.element else { continue };
@@ -38,10 +38,10 @@ pub fn picture(before: &Statechart, after: &Statechart, difference: &ChartDiffer
             ChangeKind::Moved | ChangeKind::Changed => Mark::Changed,
         };
         let element = match (mark, element) {
-            (Mark::Removed, Element::Node(id)) => Element::Node(places[&id]),
+            (Mark::Removed, Element::Node(id)) => Element::Node(nodes[&id]),
             (Mark::Removed, Element::Transition(id)) => {
                 let gone = before.transition(id).clone();
-                let (source, target) = (places[&gone.source], places[&gone.target]);
+                let (source, target) = (nodes[&gone.source], nodes[&gone.target]);
                 Element::Transition(picture.chart.connect(Transition { source, target, ..gone }))
             }
             (_, element) => element,

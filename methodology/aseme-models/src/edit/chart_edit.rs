@@ -205,9 +205,9 @@ impl<'a> ChartText<'a> {
         }
         let known = lines.settings.iter().find(|(known, _)| known.text == key);
         Ok(match (known, value.filter(|value| !value.is_empty())) {
-            (Some((_, place)), Some(value)) => {
-                let blank = if place.text.is_empty() { " " } else { "" };
-                vec![replacement(place.span, format!("{blank}{}", value_text(&value)))]
+            (Some((_, content)), Some(value)) => {
+                let blank = if content.text.is_empty() { " " } else { "" };
+                vec![replacement(content.span, format!("{blank}{}", value_text(&value)))]
             }
             (Some((key, _)), None) => vec![without_lines(self.source, key.span)],
             (None, Some(value)) => {
@@ -284,13 +284,14 @@ impl<'a> ChartText<'a> {
         edits.sort_by_key(|edit| edit.span);
         let text = super::applied(self.source, &edits);
         let changed = ChartText::new(&text);
-        let places: BTreeMap<usize, usize> = changed
+        let indices: BTreeMap<usize, usize> = changed
             .nodes
             .iter()
             .enumerate()
             .map(|(index, lines)| (lines.content.span.start, index))
             .collect();
-        let moved = |node: usize| places.get(&shifted(&edits, self.nodes[node].content.span.start)?).copied();
+        let moved =
+            |node: usize| indices.get(&shifted(&edits, self.nodes[node].content.span.start)?).copied();
         let paths = NodePaths::new(&changed.chart);
         let mut more = Vec::new();
         for (line, transition) in self.transitions.iter().zip(&self.chart.transitions) {
@@ -325,13 +326,13 @@ fn shifted(edits: &[TextEdit], at: usize) -> Option<usize> {
 }
 
 fn node_lines(document: &ItemDocument, chart: &Iac) -> Vec<NodeLines> {
-    let places: BTreeMap<usize, usize> =
+    let indices: BTreeMap<usize, usize> =
         chart.nodes.iter().enumerate().map(|(index, node)| (node.position.0.start, index)).collect();
     let mut nodes = vec![NodeLines::default(); chart.nodes.len()];
     let mut open: Vec<(usize, usize)> = Vec::new();
     for line in lines(document, "States") {
         open.retain(|(indent, _)| *indent < line.indent);
-        match (node_setting(line), places.get(&line.content.span.start)) {
+        match (node_setting(line), indices.get(&line.content.span.start)) {
             (Some(setting), _) => {
                 if let Some((_, node)) = open.last() {
                     nodes[*node].settings.push(setting);

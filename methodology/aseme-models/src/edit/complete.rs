@@ -466,11 +466,11 @@ mod tests {
 
     /// The texts of a kind at the `@` of a text, and the word that they replace.
     fn at(text: &str) -> (String, impl Fn(&str) -> Vec<String> + use<>) {
-        let place = text.find('@').expect("a position");
+        let index = text.find('@').expect("a position");
         let source = text.replacen('@', "", 1);
         let (environment, activities) = (environment(), ["Kick".to_owned(), "Wait".to_owned()]);
         let names = ProgramNames { environment: &environment, activities: &activities };
-        let found = completions(&source, place, names);
+        let found = completions(&source, index, names);
         let word = source[found.word.start..found.word.end].to_owned();
         let of = move |kind: &str| {
             found.entries.iter().filter(|it| it.kind == kind).map(|it| it.text.clone()).collect()

@@ -81,9 +81,9 @@ impl<'a> FormText<'a> {
         if key.is_empty() {
             return self.rename(index, item, class, value.unwrap_or_default());
         }
-        let feature = class.features.iter().enumerate().find(|(place, feature)| {
+        let feature = class.features.iter().enumerate().find(|(position, feature)| {
             feature.key == key
-                && *place != class.title
+                && *position != class.title
                 && !matches!(feature.kind, FeatureKind::Opposite { .. })
         });
         let Some((_, feature)) = feature else {

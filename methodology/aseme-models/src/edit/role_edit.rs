@@ -233,14 +233,14 @@ impl<'a> RoleText<'a> {
             return Ok(self.new_entry(Section::States, &line));
         };
         let settings = self.file.state_settings(entry.span);
-        let place = settings.iter().position(|(known, _)| self.text[known.start..known.end] == *key);
-        Ok(match (place, value) {
-            (Some(place), Some(value)) => vec![replacement(settings[place].1, value)],
+        let index = settings.iter().position(|(known, _)| self.text[known.start..known.end] == *key);
+        Ok(match (index, value) {
+            (Some(position), Some(value)) => vec![replacement(settings[position].1, value)],
             (None, Some(value)) => vec![insertion(entry.span.end, format!(", {key} = {value}"))],
             (Some(0), None) if settings.len() == 1 => vec![without_lines(self.text, entry.span)],
             (Some(0), None) => vec![replacement(Span::new(settings[0].0.start, settings[1].0.start), "")],
-            (Some(place), None) => {
-                vec![replacement(Span::new(settings[place - 1].1.end, settings[place].1.end), "")]
+            (Some(index), None) => {
+                vec![replacement(Span::new(settings[index - 1].1.end, settings[index].1.end), "")]
             }
             (None, None) => Vec::new(),
         })

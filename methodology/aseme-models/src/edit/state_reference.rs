@@ -32,6 +32,6 @@ pub(crate) fn words(blanked: &str, part: Span, name: &str) -> Vec<Span> {
         let (before, after) = (&content[..at], &content[at + name.len()..]);
         !before.ends_with(text::is_name_character) && !after.starts_with(text::is_name_character)
     };
-    let places = content.match_indices(name).map(|(at, _)| at).filter(|&at| is_word(at));
-    places.map(|at| Span::new(part.start + at, part.start + at + name.len())).collect()
+    let starts = content.match_indices(name).map(|(at, _)| at).filter(|&at| is_word(at));
+    starts.map(|at| Span::new(part.start + at, part.start + at + name.len())).collect()
 }

@@ -53,19 +53,19 @@ impl Iac {
     /// The model of a chart: names encoded, with default labels and names of transitions.
     pub fn from_statechart(chart: &Statechart, kind: ChartKind) -> Iac {
         let labels = chart.labels();
-        let mut places = vec![0; labels.len()];
+        let mut indices = vec![0; labels.len()];
         let mut iac =
             Iac { kind, name: chart.name.clone(), constants: chart.constants.clone(), ..Iac::default() };
-        for (place, id) in depth_first(chart).enumerate() {
-            places[id.0 as usize] = place;
-            let parent = chart.node(id).parent.map(|parent| places[parent.0 as usize]);
+        for (index, id) in depth_first(chart).enumerate() {
+            indices[id.0 as usize] = index;
+            let parent = chart.node(id).parent.map(|parent| indices[parent.0 as usize]);
             let frame = chart.layout.frames.get(&id).copied().unwrap_or_default();
             let node = node_of(chart.node(id), &labels[id.0 as usize], parent);
             iac.nodes.push(IacNode { frame, ..node });
         }
         for (id, transition) in chart.transitions() {
             let (source, target) =
-                (places[transition.source.0 as usize], places[transition.target.0 as usize]);
+                (indices[transition.source.0 as usize], indices[transition.target.0 as usize]);
             iac.transitions.push(IacTransition {
                 name: iac.usual_name(source, target),
                 te: transition.expression.to_string(),

@@ -261,7 +261,7 @@ impl Reader {
             "actions" => set(&mut node.actions, text),
             "metadata" => set(&mut node.metadata, text),
             "activity" => set(&mut refinement.activity, Some(text)),
-            "at" => set(&mut node.frame.at, layout::place(&text)) && node.frame.at.is_some(),
+            "at" => set(&mut node.frame.at, layout::parse_position(&text)) && node.frame.at.is_some(),
             "size" => set(&mut node.frame.size, layout::size(&text)) && node.frame.size.is_some(),
             "priority" => text.parse().map(|priority| refinement.priority = priority).is_ok(),
             "duration" => set(&mut refinement.duration, duration(&text)) && refinement.duration.is_some(),
@@ -408,8 +408,8 @@ impl Reader {
     }
 }
 
-fn set<T>(place: &mut T, value: T) -> bool {
-    *place = value;
+fn set<T>(target: &mut T, value: T) -> bool {
+    *target = value;
     true
 }
 

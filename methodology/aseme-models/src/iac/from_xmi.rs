@@ -210,14 +210,14 @@ impl Reader {
     fn cut_cycles(&mut self) {
         let mut settled = vec![false; self.chart.nodes.len()];
         for start in 0..self.chart.nodes.len() {
-            let (mut way, mut at) = (Vec::new(), Some(start));
+            let (mut indices, mut at) = (Vec::new(), Some(start));
             while let Some(index) = at.filter(|&index| !settled[index]) {
                 settled[index] = true;
-                way.push(index);
+                indices.push(index);
                 at = self.chart.nodes[index].parent;
             }
-            if let (Some(again), Some(&last)) = (at, way.last())
-                && way.contains(&again)
+            if let (Some(again), Some(&last)) = (at, indices.last())
+                && indices.contains(&again)
             {
                 let node = &mut self.chart.nodes[last];
                 node.parent = None;

@@ -15,7 +15,7 @@ pub(crate) fn faults(chart: &Iac, file: Span) -> Vec<Diagnostic> {
     let mut found = roots(chart, file);
     found.extend(labels(chart));
     found.extend(types(chart));
-    found.extend(places(chart));
+    found.extend(nesting(chart));
     found.extend(ends(chart));
     found
 }
@@ -86,7 +86,7 @@ fn types(chart: &Iac) -> Vec<Diagnostic> {
 }
 
 /// Checks the nesting of types.
-fn places(chart: &Iac) -> Vec<Diagnostic> {
+fn nesting(chart: &Iac) -> Vec<Diagnostic> {
     let mut found = Vec::new();
     let mut report = |span, message: String| found.push(Diagnostic::warning("E0816", span, message));
     for (node, children) in chart.nodes.iter().zip(chart.children()) {

@@ -81,7 +81,7 @@ fn transitions_in_order<'a, 'input>(
         values.flat_map(str::split_whitespace).filter_map(|word| reader.paths.find(word)).collect()
     };
     let place = |ids: &[usize]| -> BTreeMap<usize, usize> {
-        ids.iter().zip(0..).map(|(id, place)| (*id, place)).collect()
+        ids.iter().zip(0..).map(|(id, position)| (*id, position)).collect()
     };
     let (listed_nodes, listed_transitions) = (place(&listed("nodes")), place(&listed("transitions")));
     transitions.sort_by_key(|element| {

@@ -43,18 +43,19 @@ impl NodePaths {
 
     /// The shortest unique end of a node's path.
     pub(crate) fn shortest(&self, node: usize) -> String {
-        let way: Vec<usize> = std::iter::successors(Some(node), |&node| self.parents[node]).collect();
+        let indices: Vec<usize> = std::iter::successors(Some(node), |&node| self.parents[node]).collect();
         let mut rivals: Vec<usize> = self.by_last.get(&self.segments[node]).cloned().unwrap_or_default();
         rivals.retain(|&rival| rival != node);
         let mut length = 1;
-        while !rivals.is_empty() && length < way.len() {
+        while !rivals.is_empty() && length < indices.len() {
             // Each rival represents a node that many levels below it.
             rivals = rivals.into_iter().filter_map(|rival| self.parents[rival]).collect();
-            let segment = &self.segments[way[length]];
+            let segment = &self.segments[indices[length]];
             rivals.retain(|&rival| self.segments[rival] == *segment);
             length += 1;
         }
-        let mut parts: Vec<&str> = way[..length].iter().map(|&node| self.segments[node].as_str()).collect();
+        let mut parts: Vec<&str> =
+            indices[..length].iter().map(|&node| self.segments[node].as_str()).collect();
         parts.reverse();
         let root = if rivals.is_empty() { "" } else { "/" };
         format!("{root}{}", parts.join("/"))

@@ -127,7 +127,7 @@ impl ChartTransfer<'_> {
         for old in &self.older.transitions {
             let later = |node: usize| Some(self.pairs.later(NodeId(node as u32))?.0 as usize);
             let ends = later(old.source).zip(later(old.target));
-            let place = ends.and_then(|(source, target)| {
+            let position = ends.and_then(|(source, target)| {
                 let mut all = self.newer.transitions.iter().enumerate();
                 all.position(|(index, it)| !used[index] && (it.source, it.target) == (source, target))
             });
@@ -135,8 +135,8 @@ impl ChartTransfer<'_> {
                 && old.metadata.is_empty()
                 && old.bends.is_empty()
                 && old.refinement == Default::default();
-            if let Some(place) = place {
-                used[place] = true;
+            if let Some(index) = position {
+                used[index] = true;
             }
             if plain {
                 continue;
@@ -152,11 +152,11 @@ impl ChartTransfer<'_> {
                     bends_text(&old.bends)
                 )
             };
-            let Some(place) = place else {
+            let Some(index) = position else {
                 self.report_lost(old.position.0, format!("the transition was removed: `{}`", arrow()));
                 continue;
             };
-            let new = &mut self.newer.transitions[place];
+            let new = &mut self.newer.transitions[index];
             if new.metadata.is_empty() {
                 new.metadata.clone_from(&old.metadata);
             }

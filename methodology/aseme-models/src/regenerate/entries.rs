@@ -6,7 +6,7 @@ use yase_export::notation::{modifiers, refinements};
 
 use aseme::layout::{BENDS_KEY, bends_text, frame_settings};
 use aseme::path;
-use aseme::refine::place_among_twins;
+use aseme::refine::index_among_twins;
 use aseme::srm::{Section, SrmFile};
 use aseme::text;
 
@@ -52,7 +52,7 @@ fn transition(chart: &Statechart, id: TransitionId, transition: &Transition) -> 
     } else {
         format!(" : {}", transition.expression)
     };
-    let also = if place_among_twins(chart, id) > 0 { " also" } else { "" };
+    let also = if index_among_twins(chart, id) > 0 { " also" } else { "" };
     text::one_line(&format!("{path}{also}{}{colon}", modifiers(transition)))
 }
 
@@ -76,7 +76,7 @@ fn layout(chart: &Statechart) -> impl Iterator<Item = String> {
         format!("{} : {}", path::shortest_path(chart, id), settings.collect::<Vec<_>>().join(", "))
     });
     let transitions = chart.layout.bends.iter().filter(|(_, bends)| !bends.is_empty()).map(|(&id, bends)| {
-        let also = match place_among_twins(chart, id) {
+        let also = match index_among_twins(chart, id) {
             0 => String::new(),
             1 => " also".into(),
             number => format!(" also {number}"),

@@ -28,17 +28,17 @@ fn eac(aip: &Aip, protocol: &Protocol, diagnostics: &mut Vec<Diagnostic>) -> Iac
     let (formulas, findings) = liveness::parse(&formulas);
     let (chart, more) = transform::liveness_to_statechart(&formulas);
     let placed = |finding: Diagnostic| {
-        let place = spans
+        let span = spans
             .iter()
             .find(|(end, _)| finding.span.start < *end)
             .map_or(protocol.position.0, |(_, span)| *span);
-        Diagnostic { span: place, ..finding }
+        Diagnostic { span, ..finding }
     };
     diagnostics.extend(findings.into_iter().chain(more).map(placed));
     let mut eac = Iac::from_statechart(&chart, ChartKind::Inter);
     eac.name.clone_from(&protocol.name);
     eac.description = description(&participants);
-    place(&mut eac, protocol, &participants);
+    set_spans(&mut eac, protocol, &participants);
     for participant in participants {
         diagnostics.extend(exits(&mut eac, participant));
     }
@@ -46,7 +46,7 @@ fn eac(aip: &Aip, protocol: &Protocol, diagnostics: &mut Vec<Diagnostic>) -> Iac
 }
 
 /// Gives nodes and transitions the spans of the formulas that they are made from.
-fn place(eac: &mut Iac, protocol: &Protocol, parts: &[&Participant]) {
+fn set_spans(eac: &mut Iac, protocol: &Protocol, parts: &[&Participant]) {
     let mut positions = vec![protocol.position; eac.nodes.len()];
     let tops = participants(eac);
     for (index, node) in eac.nodes.iter().enumerate() {
@@ -113,11 +113,11 @@ fn exits(eac: &mut Iac, participant: &Participant) -> Vec<Diagnostic> {
         return found;
     };
     let rules = conditions(&participant.engaging_rules).unwrap_or_default();
-    if let (Some(way), false) =
+    if let (Some(transition), false) =
         (eac.transitions.iter_mut().find(|it| it.target == node && it.source != node), rules.is_empty())
     {
         let rules: Vec<String> = rules.iter().map(ToString::to_string).collect();
-        way.te = match rules.as_slice() {
+        transition.te = match rules.as_slice() {
             [one] => format!("[{one}]"),
             several => format!("[({})]", several.join(") && (")),
         };

@@ -18,15 +18,15 @@ impl SystemRoles {
             SystemRoles { functionalities: vec![Functionality::default()], ..SystemRoles::default() };
         let formulas = srm.liveness.formulas();
         let refined: Vec<&str> = formulas.iter().map(|formula| formula.name.as_str()).collect();
-        let mut places: BTreeMap<String, usize> = BTreeMap::new();
+        let mut indices: BTreeMap<String, usize> = BTreeMap::new();
         let mut own = Vec::new();
         for (index, formula) in formulas.iter().enumerate() {
             let names = srm.liveness.names(formula).map(|(name, _)| name);
             let mut activities = Vec::new();
             for name in names.filter(|name| !refined.contains(name)) {
-                let place = *places.entry(name.to_owned()).or_insert_with(|| system.add_activity(name));
-                if !activities.contains(&place) {
-                    activities.push(place);
+                let position = *indices.entry(name.to_owned()).or_insert_with(|| system.add_activity(name));
+                if !activities.contains(&position) {
+                    activities.push(position);
                 }
             }
             match index {

@@ -36,14 +36,14 @@ pub fn merge_eac(iac: &mut Iac, eac: &Iac) -> (Vec<String>, Vec<Diagnostic>) {
     for &participant in &participants {
         // merging one of them may move the others
         for number in 0.. {
-            let Some(place) = merging.places(participant).nth(number) else { break };
-            merging.composite(participant, place);
+            let Some(position) = merging.composites_of(participant).nth(number) else { break };
+            merging.composite(participant, position);
         }
     }
     let merged: Vec<String> = participants
         .iter()
-        .flat_map(|&participant| merging.places(participant))
-        .map(|place| merging.iac.nodes[place].label.clone())
+        .flat_map(|&participant| merging.composites_of(participant))
+        .map(|composite| merging.iac.nodes[composite].label.clone())
         .collect();
     let merged: Vec<String> = merged.into_iter().filter(|label| !merging.refused.contains(label)).collect();
     let mut diagnostics = merging.diagnostics;
@@ -89,7 +89,7 @@ struct ChartMerge<'a> {
 
 impl ChartMerge<'_> {
     /// The composites of the role that are called as a participant is.
-    fn places(&self, participant: usize) -> impl Iterator<Item = usize> {
+    fn composites_of(&self, participant: usize) -> impl Iterator<Item = usize> {
         let name = &self.eac.nodes[participant].name;
         let nodes = self.iac.nodes.iter().enumerate();
         nodes.filter(move |(_, node)| node.kind == "OR" && node.name == *name).map(|(index, _)| index)
@@ -112,12 +112,12 @@ impl ChartMerge<'_> {
         }
     }
 
-    fn composite(&mut self, participant: usize, place: usize) {
-        let pairs = match same_shape(self.eac, participant, self.iac, place, ShapeMatch::Refined) {
+    fn composite(&mut self, participant: usize, position: usize) {
+        let pairs = match same_shape(self.eac, participant, self.iac, position, ShapeMatch::Refined) {
             Ok(pairs) => pairs,
             Err((wanted, found)) => {
-                self.refused.push(self.iac.nodes[place].label.clone());
-                return self.mismatch(participant, place, &wanted, &found);
+                self.refused.push(self.iac.nodes[position].label.clone());
+                return self.mismatch(participant, position, &wanted, &found);
             }
         };
         for (&theirs, &own) in pairs.iter().skip(1) {
@@ -135,31 +135,31 @@ impl ChartMerge<'_> {
         }
         self.transitions(&pairs);
         let boundary = BoundaryTransitions::of(self.eac, participant);
-        let place = match boundary.need_enclosure(self.iac, place) {
-            true => enclose(self.iac, place),
-            false => place,
+        let composite = match boundary.need_enclosure(self.iac, position) {
+            true => enclose(self.iac, position),
+            false => position,
         };
-        self.ways_in(&boundary, place);
-        self.ways_out(&boundary, place);
+        self.guard_entries(&boundary, composite);
+        self.connect_exits(&boundary, composite);
     }
 
-    fn mismatch(&mut self, participant: usize, place: usize, wanted: &str, found: &str) {
+    fn mismatch(&mut self, participant: usize, index: usize, wanted: &str, found: &str) {
         let name = &self.eac.nodes[participant].name;
         let message = format!(
             "`{name}` of `{}` differs from `{}`: {found} instead of {wanted}",
             self.iac.name, self.eac.name
         );
         let hint = "copy the formula of the participant";
-        let span = self.iac.nodes[place].position.0;
+        let span = self.iac.nodes[index].position.0;
         self.diagnostics.push(Diagnostic::error("E0835", span, message).with_hint(hint));
     }
 
     /// Adds the protocol's rule for engaging in a part to each transition of the role that leads
     /// there.
-    fn ways_in(&mut self, boundary: &BoundaryTransitions<'_>, place: usize) {
+    fn guard_entries(&mut self, boundary: &BoundaryTransitions<'_>, index: usize) {
         let Some(rule) = boundary.rule else { return };
         let mut is_guarded = false;
-        for own in self.iac.transitions.iter_mut().filter(|it| it.target == place && it.source != place) {
+        for own in self.iac.transitions.iter_mut().filter(|it| it.target == index && it.source != index) {
             is_guarded = true;
             match with_guard(&own.te, &rule.te) {
                 Some(te) => own.te = te,
@@ -172,22 +172,22 @@ impl ChartMerge<'_> {
             }
         }
         if !is_guarded {
-            self.without_place(place, "rule", "nothing leads into it");
+            self.report_unmerged(index, "rule", "nothing leads into it");
         }
     }
 
     /// The exits of a part lead where the role goes on after it.
-    fn ways_out(&mut self, boundary: &BoundaryTransitions<'_>, place: usize) {
-        let leads_out = |it: &IacTransition| it.source == place && it.target != place;
+    fn connect_exits(&mut self, boundary: &BoundaryTransitions<'_>, index: usize) {
+        let leads_out = |it: &IacTransition| it.source == index && it.target != index;
         let Some(target) = self.iac.transitions.iter().find(|it| leads_out(it)).map(|it| it.target) else {
             if boundary.exits.iter().any(|exit| has_content(exit)) {
-                self.without_place(place, "outcomes", "nothing leads out of it");
+                self.report_unmerged(index, "outcomes", "nothing leads out of it");
             }
             return;
         };
         let may_complete = boundary.exits.iter().any(|exit| !has_content(exit));
         for exit in boundary.exits.iter().filter(|exit| has_content(exit)) {
-            let name = self.iac.usual_name(place, target);
+            let name = self.iac.usual_name(index, target);
             let is_same = |own: &IacTransition| (&own.te, &own.refinement) == (&exit.te, &exit.refinement);
             if self.iac.transitions.iter().any(|own| leads_out(own) && is_same(own)) {
                 continue;
@@ -196,18 +196,18 @@ impl ChartMerge<'_> {
             match own.find(|own| !may_complete && !has_content(own)) {
                 Some(own) => (own.te, own.refinement) = (exit.te.clone(), exit.refinement.clone()),
                 None => {
-                    let added = IacTransition { source: place, target, name, ..(*exit).clone() };
+                    let added = IacTransition { source: index, target, name, ..(*exit).clone() };
                     self.iac.transitions.push(added);
                 }
             }
         }
     }
 
-    fn without_place(&mut self, place: usize, what: &str, why: &str) {
-        let (part, role) = (self.iac.nodes[place].written(), &self.iac.name);
+    fn report_unmerged(&mut self, index: usize, what: &str, why: &str) {
+        let (part, role) = (self.iac.nodes[index].written(), &self.iac.name);
         let message = format!("the {what} of the part `{part}` have no place in `{role}`: {why}");
         let hint = format!("the role does the part as one of its states, as in `role = {part}`");
-        let span = self.iac.nodes[place].position.0;
+        let span = self.iac.nodes[index].position.0;
         self.diagnostics.push(Diagnostic::error("E0839", span, message).with_hint(hint));
     }
 
@@ -249,16 +249,16 @@ impl<'a> BoundaryTransitions<'a> {
 
     /// Whether the part has to be enclosed: the role repeats it without anything between, or comes
     /// to it from a composite, which a guarded transition would leave before it has completed.
-    fn need_enclosure(&self, role: &Iac, place: usize) -> bool {
-        let mut into = role.transitions.iter().filter(|it| it.target == place && !it.refinement.internal);
+    fn need_enclosure(&self, role: &Iac, index: usize) -> bool {
+        let mut into = role.transitions.iter().filter(|it| it.target == index && !it.refinement.internal);
         let is_composite = |node: usize| matches!(role.nodes[node].kind.as_str(), "OR" | "AND");
         let has_outcomes = self.exits.iter().any(|exit| has_content(exit));
-        into.any(|transition| match transition.source == place {
+        into.any(|transition| match transition.source == index {
             true => self.rule.is_some() || has_outcomes,
             false => {
                 self.rule.is_some()
                     && is_composite(transition.source)
-                    && !is_inside(role, transition.source, place)
+                    && !is_inside(role, transition.source, index)
             }
         })
     }
@@ -308,9 +308,9 @@ fn enclose(chart: &mut Iac, part: usize) -> usize {
     for (source, target) in [(start, part), (part, end)] {
         chart.transitions.push(IacTransition { source, target, ..IacTransition::default() });
     }
-    let places = chart.arrange(&children);
-    chart.relabel(places[around]);
-    places[part]
+    let indices = chart.arrange(&children);
+    chart.relabel(indices[around]);
+    indices[part]
 }
 
 /// An expression with another guard beside its own, and with the other's trigger and actions where
@@ -380,12 +380,12 @@ pub fn same_shape(
     eac: &Iac,
     participant: usize,
     iac: &Iac,
-    place: usize,
+    position: usize,
     wanted: ShapeMatch,
 ) -> Result<BTreeMap<usize, usize>, (String, String)> {
     let (theirs, own) = (eac.children(), iac.children());
     let mut pairs = BTreeMap::new();
-    let mut open = vec![(participant, place)];
+    let mut open = vec![(participant, position)];
     while let Some((a, b)) = open.pop() {
         pairs.insert(a, b);
         let longest = theirs[a].len().max(own[b].len());

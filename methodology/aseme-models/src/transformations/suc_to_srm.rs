@@ -161,10 +161,10 @@ impl<'a> SrmBuilder<'a> {
                 let liveness = &mut self.srm.roles[role].liveness;
                 *liveness = with_formula(liveness, &participant.name, &participant.liveness);
                 let capability = self.srm.capabilities.iter_mut().find(|it| it.name == participant.name);
-                let place = capability
+                let indices = capability
                     .map_or(&mut self.srm.roles[role].activities, |capability| &mut capability.activities);
-                place.extend(
-                    activities.into_iter().filter(|activity| !place.contains(activity)).collect::<Vec<_>>(),
+                indices.extend(
+                    activities.into_iter().filter(|activity| !indices.contains(activity)).collect::<Vec<_>>(),
                 );
             }
             None => self.free_participant(participant),

@@ -122,10 +122,10 @@ fn blanks_in_texts_stay_when_an_entry_becomes_one_line() {
         let after = edited(text, edit);
         after.lines().find(|line| line.starts_with("b -> ")).map(String::from).unwrap_or(after)
     };
-    let way = transition(text, "c", "Say");
-    assert_eq!(added(&set(way, "[Say.text\n == \"a  b\"]")), "b -> c : [Say.text == \"a  b\"]");
+    let edge = transition(text, "c", "Say");
+    assert_eq!(added(&set(edge, "[Say.text\n == \"a  b\"]")), "b -> c : [Say.text == \"a  b\"]");
     let modifiers = Some("!3".to_owned());
-    let edit = ModelEdit::SetTransition { transition: way, expression: None, modifiers };
+    let edit = ModelEdit::SetTransition { transition: edge, expression: None, modifiers };
     assert_eq!(added(&edit), "b -> c !3 : [Say.text == \"go  left\"]");
     let ModelOutline::Role { transitions, .. } = outline(text) else { panic!("a role") };
     assert!(transitions.iter().any(|it| it.expression == "[Say.text == \"go  left\"]"));

@@ -182,9 +182,9 @@ fn a_chart_keeps_what_only_its_file_can_say() {
         Iac::from_statechart(&chart("player = Stand . (Search|act)\nact = Track . Kick"), ChartKind::Intra);
     let place = |iac: &Iac, name: &str| iac.nodes.iter().position(|node| node.name == name).unwrap();
     for (name, functionality) in [("Kick", "motion"), ("Search", "vision")] {
-        let place = place(&older, name);
-        older.nodes[place].functionality = functionality.into();
-        older.nodes[place].metadata = format!("at 10 20 of {name}");
+        let index = place(&older, name);
+        older.nodes[index].functionality = functionality.into();
+        older.nodes[index].metadata = format!("at 10 20 of {name}");
     }
     let kick = place(&older, "Kick");
     let end = older.transitions.iter_mut().find(|it| it.source == kick).unwrap();

@@ -202,10 +202,11 @@ fn chart() -> impl Strategy<Value = Iac> {
 
 /// Adds a node below the path to the last one, so that every node follows the other descendants of
 /// its parent.
-fn grow(chart: &mut Iac, (name, kind, place, functionality, by_label, variables): Choices) {
+fn grow(chart: &mut Iac, (name, kind, parent, functionality, by_label, variables): Choices) {
     let parent = chart.nodes.len().checked_sub(1).map(|last| {
-        let way: Vec<usize> = std::iter::successors(Some(last), |&node| chart.nodes[node].parent).collect();
-        way[place.index(way.len())]
+        let indices: Vec<usize> =
+            std::iter::successors(Some(last), |&node| chart.nodes[node].parent).collect();
+        indices[parent.index(indices.len())]
     });
     let siblings = chart.nodes.iter().filter(|node| node.parent == parent).count();
     let label = parent.map_or("0".into(), |parent| format!("{}.{}", chart.nodes[parent].label, siblings + 1));

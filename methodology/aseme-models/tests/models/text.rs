@@ -166,7 +166,7 @@ fn comments_stay_where_they_are() {
     );
     let lost = model.write(Format::Xmi, text).unwrap().lost;
     assert_eq!(
-        codes_and_texts(text, &lost).iter().map(|(_, place)| *place).collect::<Vec<_>>(),
+        codes_and_texts(text, &lost).iter().map(|(_, text)| *text).collect::<Vec<_>>(),
         ["# who", "# what", "# one", "# two", "# three", "# end"]
     );
 }
@@ -189,7 +189,7 @@ fn comments_of_a_chart_stay_with_states_and_transitions() {
 
 #[test]
 fn faults_of_texts_are_placed() {
-    for (text, code, place) in [
+    for (text, code, marked) in [
         ("SAG:\nGool: g\n", "E0261", "Gool"),
         ("SAG: team\n", "E0262", "team"),
         ("SAG:\nGoal: g\n  name = \"x\n", "E0266", "name"),
@@ -213,7 +213,7 @@ fn faults_of_texts_are_placed() {
         ("IAC: c\nConstants:\n  a = wide\nStates:\n  r OR\n    START\n", "E0239", "wide"),
     ] {
         let (.., findings) = read(text);
-        assert!(codes_and_texts(text, &findings).contains(&(code, place)), "{text}\n{findings:?}");
+        assert!(codes_and_texts(text, &findings).contains(&(code, marked)), "{text}\n{findings:?}");
     }
 }
 

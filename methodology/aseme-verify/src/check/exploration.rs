@@ -209,8 +209,8 @@ impl ExplorationCheck<'_> {
     fn unreachable_transitions(&self, accounted: &BTreeSet<TransitionId>) -> Vec<Finding> {
         let ids = self.subject.chart.transitions().map(|(id, _)| id);
         let never = ids.filter(|&id| {
-            let places = &self.subject.spans;
-            let (guard, whole) = (places.guard(id), places.transition(id));
+            let spans = &self.subject.spans;
+            let (guard, whole) = (spans.guard(id), spans.transition(id));
             let is_told =
                 guard != Span::default() && (self.blamed.contains(&guard) || self.blamed.contains(&whole));
             !self.found.was_taken(id)
@@ -461,14 +461,14 @@ impl ExplorationCheck<'_> {
         };
         let is_basic = |id: &NodeId| self.subject.kind(*id) == NodeKind::Basic;
         let states: Vec<NodeId> = self.subject.chart.nodes().map(|(id, _)| id).filter(is_basic).collect();
-        let ways = self.subject.chart.transitions().filter(|(_, it)| !it.expression.is_never());
-        let ways: Vec<TransitionId> = ways.map(|(id, _)| id).collect();
+        let possible = self.subject.chart.transitions().filter(|(_, it)| !it.expression.is_never());
+        let transitions: Vec<TransitionId> = possible.map(|(id, _)| id).collect();
         format!(
             "; recordings cover {} of {} basic states and {} of {} transitions",
             states.iter().filter(|&id| recorded.entered.contains(id)).count(),
             states.len(),
-            ways.iter().filter(|&id| recorded.fired.contains(id)).count(),
-            ways.len()
+            transitions.iter().filter(|&id| recorded.fired.contains(id)).count(),
+            transitions.len()
         )
     }
 }

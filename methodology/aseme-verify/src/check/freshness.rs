@@ -180,8 +180,8 @@ impl<'a> ArrivalSearch<'a> {
             return parent.into_iter().collect();
         }
         let transition = self.subject.outgoing[node.0 as usize].iter();
-        let ways = transition.filter(|&&way| self.subject.trigger(way).is_none());
-        ways.flat_map(|&way| self.entered(chart.transition(way).target)).collect()
+        let untriggered = transition.filter(|&&id| self.subject.trigger(id).is_none());
+        untriggered.flat_map(|&id| self.entered(chart.transition(id).target)).collect()
     }
 
     /// The nodes that are reached by entering a node.

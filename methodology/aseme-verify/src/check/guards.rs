@@ -24,7 +24,7 @@ pub(crate) fn check(subject: &CheckedModel, parts: &CheckedParts<'_>) -> Vec<Dia
             return found;
         }
         found.extend(guards.cases_left_open(id));
-        found.extend(guards.dead_ways(id));
+        found.extend(guards.dead_paths(id));
         found.extend(guards.alternatives(id));
     }
     found.extend(guards.conflicting_regions(parts));

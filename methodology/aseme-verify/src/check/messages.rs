@@ -24,16 +24,16 @@ pub(crate) fn names(subject: &CheckedModel, world: &ProgramSymbols) -> Vec<Diagn
     if let Err(wrong) = subject.chart.compile_with(&world.vocabulary, subject.semantics) {
         // Structural faults do not depend on the program: other checks report them.
         let is_about_names = |it: &Diagnostic| it.is_error() && it.code.starts_with("E01");
-        let places = PlacedTransitions::new(subject);
-        found.extend(wrong.into_iter().filter(is_about_names).map(|diagnostic| unknown(&places, diagnostic)));
+        let placed = PlacedTransitions::new(subject);
+        found.extend(wrong.into_iter().filter(is_about_names).map(|diagnostic| unknown(&placed, diagnostic)));
     }
     found
 }
 
 /// An invalid expression as a finding, positioned in the file only where the file contains it
 /// verbatim.
-fn unknown(places: &PlacedTransitions, diagnostic: Diagnostic) -> Diagnostic {
-    let span = if places.contain(diagnostic.span) { diagnostic.span } else { Span::default() };
+fn unknown(placed: &PlacedTransitions, diagnostic: Diagnostic) -> Diagnostic {
+    let span = if placed.contain(diagnostic.span) { diagnostic.span } else { Span::default() };
     let hint = diagnostic
         .hint
         .clone()
@@ -151,8 +151,8 @@ fn reader_apart(
 ) -> Option<TransitionId> {
     let within = |node: NodeId| {
         let (first, end) = subject.extent(node);
-        let place = |number: u32| readers.partition_point(|&(at, _)| at < number);
-        place(first)..place(end)
+        let index = |number: u32| readers.partition_point(|&(at, _)| at < number);
+        index(first)..index(end)
     };
     let mut region = node;
     subject.chart.ancestors(node).find_map(|around| {
@@ -236,7 +236,7 @@ fn undelivered_at(
         let is_read = state.is_active(source) && !state.running.contains(&source);
         is_read && !may_return_while(found, outgoing, number, source, publishers)
     };
-    let way = path_without(found, outgoing, publishers, is_in_vain)?;
+    let trace = path_without(found, outgoing, publishers, is_in_vain)?;
     let names: Vec<String> = publishers.iter().map(|&node| format!("`{}`", subject.path(node))).collect();
     let says = format!(
         "the guard of `{}` waits for a `{message}` that may not have arrived and cannot arrive while it waits: it is published by {}",
@@ -245,7 +245,7 @@ fn undelivered_at(
     );
     let diagnostic = Diagnostic::warning("M18", subject.spans.guard(id), says);
     let hint = format!("run its publisher before, or add a transition for `{message} == NULL`");
-    Some(Finding { diagnostic: diagnostic.with_hint(hint), trace: Some(way) })
+    Some(Finding { diagnostic: diagnostic.with_hint(hint), trace: Some(trace) })
 }
 
 /// M21: two states run the same activity at once, and both publish: each overwrites the other's

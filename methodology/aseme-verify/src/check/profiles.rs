@@ -45,9 +45,9 @@ pub(crate) fn check(subject: &CheckedModel) -> Vec<Diagnostic> {
     constructs.collect()
 }
 
-fn ways(subject: &CheckedModel, is_meant: impl Fn(yase::TransitionId) -> bool) -> Vec<Span> {
-    let ways = subject.chart.transitions().map(|(id, _)| id).filter(|&id| is_meant(id));
-    ways.map(|id| subject.spans.transition(id)).collect()
+fn transitions(subject: &CheckedModel, is_meant: impl Fn(yase::TransitionId) -> bool) -> Vec<Span> {
+    let meant = subject.chart.transitions().map(|(id, _)| id).filter(|&id| is_meant(id));
+    meant.map(|id| subject.spans.transition(id)).collect()
 }
 
 fn nodes(subject: &CheckedModel, is_meant: impl Fn(NodeId) -> bool) -> Vec<Span> {
@@ -61,7 +61,7 @@ fn nodes(subject: &CheckedModel, is_meant: impl Fn(NodeId) -> bool) -> Vec<Span>
 }
 
 fn left_by_guard(subject: &CheckedModel) -> Vec<Span> {
-    ways(subject, |id| {
+    transitions(subject, |id| {
         let transition = subject.transition(id);
         let expression = &transition.expression;
         let is_composite = matches!(subject.kind(transition.source), NodeKind::Or | NodeKind::And);
@@ -71,14 +71,14 @@ fn left_by_guard(subject: &CheckedModel) -> Vec<Span> {
 }
 
 fn guarded_starts(subject: &CheckedModel) -> Vec<Span> {
-    ways(subject, |id| {
+    transitions(subject, |id| {
         let transition = subject.transition(id);
         subject.kind(transition.source) == NodeKind::Start && transition.expression.guard.is_some()
     })
 }
 
 fn unguarded_first(subject: &CheckedModel) -> Vec<Span> {
-    ways(subject, |id| {
+    transitions(subject, |id| {
         let transition = subject.transition(id);
         let is_overtaken_by = |other: yase::TransitionId| {
             let later = subject.transition(other);
@@ -95,7 +95,7 @@ fn unguarded_first(subject: &CheckedModel) -> Vec<Span> {
 }
 
 fn to_ancestor(subject: &CheckedModel) -> Vec<Span> {
-    ways(subject, |id| {
+    transitions(subject, |id| {
         let transition = subject.transition(id);
         let is_inner = transition.source != transition.target && !transition.internal;
         is_inner && subject.contains(transition.target, transition.source)

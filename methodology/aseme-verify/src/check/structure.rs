@@ -11,11 +11,11 @@ pub(crate) fn check(subject: &CheckedModel) -> Vec<Diagnostic> {
     let elements = subject.chart.check_elements(&subject.semantics).into_iter();
     // what may have no open way is judged by what the guards say
     let errors = elements.filter(|(diagnostic, _)| diagnostic.is_error());
-    let place = |(diagnostic, about): (Diagnostic, _)| {
+    let located = |(diagnostic, about): (Diagnostic, _)| {
         let hint = diagnostic.hint.clone().or_else(|| usual_hint(diagnostic.code).map(String::from));
         Diagnostic { span: subject.spans.element(about), hint, ..diagnostic }
     };
-    let mut found: Vec<Diagnostic> = errors.map(place).collect();
+    let mut found: Vec<Diagnostic> = errors.map(located).collect();
     if found.is_empty() {
         found.extend(subject.chart.nodes().filter_map(|(id, _)| sink(subject, id)));
         found.extend(subject.chart.nodes().filter_map(|(id, _)| history(subject, id)));
@@ -84,7 +84,10 @@ fn history(subject: &CheckedModel, id: NodeId) -> Option<Diagnostic> {
         return None;
     }
     let before = reached_without(subject, owner);
-    let first = subject.incoming(id).iter().find(|&&way| before.contains(&subject.transition(way).source))?;
+    let first = subject
+        .incoming(id)
+        .iter()
+        .find(|&&transition| before.contains(&subject.transition(transition).source))?;
     let source = subject.path(subject.transition(*first).source);
     let message = format!(
         "`{}` has no default, and `{source}` may lead to it before `{}` has been active",
@@ -131,16 +134,16 @@ fn drawn(subject: &CheckedModel, id: NodeId) -> Vec<Diagnostic> {
     let drawn: Vec<TransitionId> = drawn.collect();
     let Some(&first) = drawn.first() else { return Vec::new() };
     let highest = subject.transition(first).priority;
-    let lower = drawn.into_iter().filter(|&way| subject.transition(way).priority != highest);
+    let lower = drawn.into_iter().filter(|&id| subject.transition(id).priority != highest);
     lower
-        .map(|way| {
+        .map(|id| {
             let message = format!(
                 "`{}` has a weight like `{}`, but has another priority",
-                subject.arrow(way),
+                subject.arrow(id),
                 subject.arrow(first)
             );
             let found =
-                subject.warn_of("M23", way, message).with_hint("give them the same priority, or no weights");
+                subject.warn_of("M23", id, message).with_hint("give them the same priority, or no weights");
             Diagnostic { severity: yase::Severity::Error, ..found }
         })
         .collect()

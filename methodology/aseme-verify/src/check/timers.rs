@@ -144,7 +144,7 @@ fn overtaken(subject: &CheckedModel, id: TransitionId) -> Option<Diagnostic> {
     let leaves = subject
         .outgoing(transition.source)
         .iter()
-        .any(|&way| way != id && !subject.transition(way).expression.is_never());
+        .any(|&other| other != id && !subject.transition(other).expression.is_never());
     (!leaves).then(|| {
         let (long, short) = (long.as_millis(), short.as_millis());
         let message = format!("`{other}` is restarted before it can expire: {long} ms each time `{waited}` expires, every {short} ms");

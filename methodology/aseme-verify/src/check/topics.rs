@@ -27,12 +27,12 @@ pub(crate) fn unmet(subject: &CheckedModel, world: &ProgramSymbols) -> Vec<Diagn
         };
         match (read.get(&topic.id), written.get(&topic.id)) {
             (Some(&span), None) if !meets(&published) => found.push(never_published(topic, span)),
-            (Some(&place), None) if own.as_ref().is_some_and(|own| !own.contains(topic.path.as_str())) => {
+            (Some(&span), None) if own.as_ref().is_some_and(|own| !own.contains(topic.path.as_str())) => {
                 found.extend(
-                    published_elsewhere(topic, world).map(|others| from_elsewhere(topic, place, &others)),
+                    published_elsewhere(topic, world).map(|others| from_elsewhere(topic, span, &others)),
                 );
             }
-            (None, Some(&place)) if !meets(&taken) => found.push(never_read(topic, place)),
+            (None, Some(&span)) if !meets(&taken) => found.push(never_read(topic, span)),
             _ => {}
         }
     }

@@ -38,8 +38,8 @@ pub(crate) fn blackboard(subject: &CheckedModel, id: TransitionId) -> NodeId {
 
 /// The innermost region that contains a node, or the root.
 pub(crate) fn region_of(subject: &CheckedModel, node: NodeId) -> NodeId {
-    let way = std::iter::once(node).chain(subject.chart.ancestors(node));
-    way.into_iter().find(|&it| subject.is_region(it)).unwrap_or(Statechart::ROOT)
+    let ancestors = std::iter::once(node).chain(subject.chart.ancestors(node));
+    ancestors.into_iter().find(|&it| subject.is_region(it)).unwrap_or(Statechart::ROOT)
 }
 
 pub(crate) fn starts(actions: &[Action]) -> impl Iterator<Item = (String, Duration)> {

@@ -163,7 +163,7 @@ impl ComposedRobot {
     fn idle_regions(&self, read: &[bool]) -> Vec<NodeId> {
         let chart = self.abstraction.chart.statechart();
         let sent = self.sent.iter().zip(read).filter(|(_, is_read)| **is_read);
-        let sending = sent.flat_map(|(message, _)| &message.uses).map(|place| match *place {
+        let sending = sent.flat_map(|(message, _)| &message.uses).map(|location| match *location {
             MessageUse::Way(transition) => chart.transition(transition).source,
             MessageUse::Node(node) => node,
         });
@@ -333,16 +333,16 @@ impl<'a> MessageFilter<'a> {
 
 fn received_messages(chart: &Statechart, filter: &MessageFilter<'_>) -> Vec<ReceivedMessage> {
     let mut found: Vec<ReceivedMessage> = Vec::new();
-    for (way, transition) in chart.transitions() {
+    for (id, transition) in chart.transitions() {
         let waited =
             triggers(transition).iter().map(|path| (filter.awaited_message(path), Some(path.text())));
         let read = transition.expression.guard.iter().flat_map(paths).map(|path| (filter.read(path), None));
         for (called, event) in waited.chain(read) {
             let Some(called) = called else { continue };
             match found.iter_mut().find(|it| it.called.prefix == called.prefix) {
-                Some(known) if known.event.is_none() => (known.event, known.transition) = (event, way),
+                Some(known) if known.event.is_none() => (known.event, known.transition) = (event, id),
                 Some(_) => {}
-                None => found.push(ReceivedMessage { called, event, transition: way }),
+                None => found.push(ReceivedMessage { called, event, transition: id }),
             }
         }
     }
@@ -351,18 +351,18 @@ fn received_messages(chart: &Statechart, filter: &MessageFilter<'_>) -> Vec<Rece
 
 pub(crate) fn messages_to_send(chart: &Statechart, world: Option<&ProgramSymbols>) -> Vec<SentMessage> {
     let mut found: Vec<SentMessage> = Vec::new();
-    let by_actions = actions(chart).filter_map(|(place, action)| {
-        message_names::message_written(action, world).map(|(word, _)| (place, word))
+    let by_actions = actions(chart).filter_map(|(location, action)| {
+        message_names::message_written(action, world).map(|(word, _)| (location, word))
     });
     let by_activities = chart.nodes().flat_map(|(id, node)| {
         let sent =
             node.activity.iter().flat_map(|activity| message_names::messages_written_by(activity, world));
         sent.map(move |word| (MessageUse::Node(id), word)).collect::<Vec<_>>()
     });
-    for (place, word) in by_actions.chain(by_activities) {
+    for (location, word) in by_actions.chain(by_activities) {
         match found.iter_mut().find(|it| it.name == word) {
-            Some(known) => known.uses.push(place),
-            None => found.push(SentMessage { name: word, uses: vec![place] }),
+            Some(known) => known.uses.push(location),
+            None => found.push(SentMessage { name: word, uses: vec![location] }),
         }
     }
     found
@@ -376,7 +376,7 @@ fn waits(
     filter: &MessageFilter<'_>,
 ) -> Vec<WaitingState> {
     let mut found: Vec<WaitingState> = Vec::new();
-    for (way, transition) in subject.chart.transitions() {
+    for (id, transition) in subject.chart.transitions() {
         let waited = triggers(transition).iter().filter_map(|path| filter.awaited_message(path));
         let read = transition.expression.guard.iter().flat_map(paths).filter_map(|path| filter.read(path));
         let named = waited.chain(read).next();
@@ -384,7 +384,7 @@ fn waits(
         let Some(received_message) = named else { continue };
         for node in stable_nodes(subject, transition.source) {
             if !found.iter().any(|wait| wait.node == node) {
-                found.push(WaitingState { node, received_message, transition: way });
+                found.push(WaitingState { node, received_message, transition: id });
             }
         }
     }
@@ -504,7 +504,7 @@ impl Behaviour {
         let mut came: BTreeMap<usize, Option<(usize, usize)>> = BTreeMap::from([(state, None)]);
         let mut open = std::collections::VecDeque::from([state]);
         while let Some(at) = open.pop_front() {
-            let fits = |way: &&LabelledEdge| way.observable == shows && self.classes[way.to] == to;
+            let fits = |edge: &&LabelledEdge| edge.observable == shows && self.classes[edge.to] == to;
             if let Some(last) = self.full.edges[at].iter().find(fits) {
                 let mut steps = vec![last.edge];
                 let mut back = at;
@@ -515,10 +515,10 @@ impl Behaviour {
                 steps.reverse();
                 return (steps, last.to);
             }
-            for way in self.full.edges[at].iter().filter(|way| way.observable == Observable::Nothing) {
-                if self.classes[way.to] == class && !came.contains_key(&way.to) {
-                    came.insert(way.to, Some((at, way.edge)));
-                    open.push_back(way.to);
+            for edge in self.full.edges[at].iter().filter(|edge| edge.observable == Observable::Nothing) {
+                if self.classes[edge.to] == class && !came.contains_key(&edge.to) {
+                    came.insert(edge.to, Some((at, edge.edge)));
+                    open.push_back(edge.to);
                 }
             }
         }
@@ -553,7 +553,7 @@ fn wait_end_classes(graph: &Graph, step_interfaces: &[StepInterface], wait: usiz
     let mut before = vec![Vec::new(); graph.edges.len()];
     let mut open = Vec::new();
     for (from, edges) in graph.edges.iter().enumerate() {
-        edges.iter().for_each(|way| before[way.to].push(from));
+        edges.iter().for_each(|edge| before[edge.to].push(from));
         open.extend(edges.iter().any(ends).then_some(from));
     }
     let mut reaches = vec![false; graph.edges.len()];

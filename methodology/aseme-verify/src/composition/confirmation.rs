@@ -59,8 +59,8 @@ fn replayed(
     }
     for (event, to) in product.steps_to(state) {
         match event {
-            GlobalEvent::Step { robot: it, way: edge } if it == robot => steps.go(edge, &[])?,
-            GlobalEvent::Arrival { passage, way } if product.passages[passage].to == robot => {
+            GlobalEvent::Step { robot: it, edge } if it == robot => steps.go(edge, &[])?,
+            GlobalEvent::Arrival { passage, edge } if product.passages[passage].to == robot => {
                 let content = product.states[to].newest[passage];
                 let is_known = is_only_route(product, robot, passage);
                 let messages = prefixes(own, &product.passages[passage]).map(|prefix| {
@@ -69,8 +69,8 @@ fn replayed(
                     (prefix, facts)
                 });
                 let messages: Vec<_> = messages.collect();
-                match way {
-                    Some(way) => steps.go(way, &messages)?,
+                match edge {
+                    Some(edge) => steps.go(edge, &messages)?,
                     None => steps.receive(&messages),
                 }
             }
@@ -116,9 +116,9 @@ impl RobotSteps<'_> {
         let (steps, to) = self.behaviour.steps(self.at, edge.observable, edge.to);
         self.at = to;
         let last = steps.len().saturating_sub(1);
-        for (number, place) in steps.into_iter().enumerate() {
+        for (number, index) in steps.into_iter().enumerate() {
             let found = &self.behaviour.found;
-            let (Some(step), Some(known)) = (found.step(place), found.steps().get(place)) else { continue };
+            let (Some(step), Some(known)) = (found.step(index), found.steps().get(index)) else { continue };
             if number == last {
                 self.receive(messages);
             }

@@ -63,8 +63,8 @@ fn forwards(product: &GlobalProduct<'_>) -> Vec<Vec<usize>> {
 /// The states from which a wait can end. Unexplored states count as such, to avoid false alarms.
 fn may_end(product: &GlobalProduct<'_>, before: &[Vec<usize>], robot: usize, wait: usize) -> Vec<bool> {
     let ends = |edge: &&ProductEdge| {
-        let way = step_of(product, edge, robot);
-        way.is_some_and(|way| product.behaviours[robot].step_interface(&way).exited_waits.contains(&wait))
+        let step = step_of(product, edge, robot);
+        step.is_some_and(|edge| product.behaviours[robot].step_interface(&edge).exited_waits.contains(&wait))
     };
     let mut open: Vec<usize> = product.edges.iter().filter(ends).map(|edge| edge.from).collect();
     open.extend(&product.open_ended);
@@ -80,8 +80,8 @@ fn may_end(product: &GlobalProduct<'_>, before: &[Vec<usize>], robot: usize, wai
 /// The step of a robot on an edge, if it makes one.
 fn step_of(product: &GlobalProduct<'_>, edge: &ProductEdge, robot: usize) -> Option<LabelledEdge> {
     match edge.by {
-        GlobalEvent::Step { robot: it, way } if it == robot => Some(way),
-        GlobalEvent::Arrival { passage, way } if product.passages[passage].to == robot => way,
+        GlobalEvent::Step { robot: it, edge } if it == robot => Some(edge),
+        GlobalEvent::Arrival { passage, edge } if product.passages[passage].to == robot => edge,
         _ => None,
     }
 }

@@ -72,9 +72,9 @@ pub(crate) struct GlobalState {
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum GlobalEvent {
     /// A robot makes a step without a message.
-    Step { robot: usize, way: LabelledEdge },
+    Step { robot: usize, edge: LabelledEdge },
     /// A message arrives; a receiver that waits for it makes a step.
-    Arrival { passage: usize, way: Option<LabelledEdge> },
+    Arrival { passage: usize, edge: Option<LabelledEdge> },
     /// A message in transit is lost.
     Loss { passage: usize },
 }
@@ -208,9 +208,9 @@ impl<'a> CompositionSearch<'a> {
         match self.numbers.entry(global) {
             Entry::Occupied(known) => Some(*known.get()),
             Entry::Vacant(_) if count >= self.settings.states => None,
-            Entry::Vacant(place) => {
-                self.found.states.push(place.key().clone());
-                place.insert(count);
+            Entry::Vacant(index) => {
+                self.found.states.push(index.key().clone());
+                index.insert(count);
                 self.found.predecessor.push(came);
                 self.open.push_back(count);
                 Some(count)
@@ -243,7 +243,7 @@ impl<'a> CompositionSearch<'a> {
             let (global, crowded) = self.apply_step(global.clone(), robot, edge);
             found.push(GlobalSuccessor {
                 global,
-                by: GlobalEvent::Step { robot, way: edge },
+                by: GlobalEvent::Step { robot, edge },
                 is_dropped: false,
                 crowded,
             });
@@ -259,9 +259,9 @@ impl<'a> CompositionSearch<'a> {
     /// that kind, it stays in the channel, and later messages may overtake it.
     fn arrivals(&mut self, global: &GlobalState, channel: usize, found: &mut Vec<GlobalSuccessor>) {
         let arrives = |&(passage, _): &(usize, u32)| !self.is_blocked(global, passage);
-        let Some(place) = global.channels[channel].iter().position(arrives) else { return };
+        let Some(index) = global.channels[channel].iter().position(arrives) else { return };
         let mut there = global.clone();
-        let (passage, content) = there.channels[channel].remove(place);
+        let (passage, content) = there.channels[channel].remove(index);
         if self.found.channels.may_lose && !self.found.is_local(passage) {
             let (global, by) = (there.clone(), GlobalEvent::Loss { passage });
             found.push(GlobalSuccessor { global, by, is_dropped: false, crowded: None });
@@ -269,7 +269,7 @@ impl<'a> CompositionSearch<'a> {
         there.newest[passage] = content;
         let edges = self.receiving_steps(&there, passage);
         if edges.is_empty() {
-            let (global, by) = (there, GlobalEvent::Arrival { passage, way: None });
+            let (global, by) = (there, GlobalEvent::Arrival { passage, edge: None });
             found.push(GlobalSuccessor { global, by, is_dropped: false, crowded: None });
             return;
         }
@@ -278,7 +278,7 @@ impl<'a> CompositionSearch<'a> {
             let interface = behaviours[to].step_interface(&edge);
             if self.found.contents.allow(to, &interface.conditions, &there.newest) {
                 let (global, crowded) = self.apply_step(there.clone(), to, edge);
-                let by = GlobalEvent::Arrival { passage, way: Some(edge) };
+                let by = GlobalEvent::Arrival { passage, edge: Some(edge) };
                 found.push(GlobalSuccessor { global, by, is_dropped: interface.drops, crowded });
             }
         }
@@ -365,29 +365,29 @@ impl GlobalProduct<'_> {
 
     /// The events on the shortest path to a state, each with the state that it leads to.
     pub(crate) fn steps_to(&self, mut state: usize) -> Vec<(GlobalEvent, usize)> {
-        let mut way = Vec::new();
+        let mut indices = Vec::new();
         while let Some(Some((before, by))) = self.predecessor.get(state) {
-            way.push((*by, state));
+            indices.push((*by, state));
             state = *before;
         }
-        way.reverse();
-        way
+        indices.reverse();
+        indices
     }
 
     /// A path as text in the format of [`super::team_trace`].
-    pub(crate) fn trace_text(&self, way: &[GlobalEvent]) -> String {
+    pub(crate) fn trace_text(&self, events: &[GlobalEvent]) -> String {
         let mut at: Vec<usize> = self.behaviours.iter().map(Behaviour::first_state).collect();
         let mut text = String::new();
-        for happening in way {
+        for happening in events {
             match *happening {
-                GlobalEvent::Step { robot, way: edge } => self.write_step(robot, edge, &mut at, &mut text),
-                GlobalEvent::Arrival { passage, way } => {
+                GlobalEvent::Step { robot, edge } => self.write_step(robot, edge, &mut at, &mut text),
+                GlobalEvent::Arrival { passage, edge } => {
                     let &MessageRoute { from, sent_message, to, .. } = &self.passages[passage];
                     let from = &self.robots[from];
                     let message = from.sent[sent_message].name.name();
                     text += &format!("# `{message}` of {} comes to {}\n", from.name, self.robots[to].name);
-                    if let Some(way) = way {
-                        self.write_step(to, way, &mut at, &mut text);
+                    if let Some(edge) = edge {
+                        self.write_step(to, edge, &mut at, &mut text);
                     }
                 }
                 GlobalEvent::Loss { passage } => {

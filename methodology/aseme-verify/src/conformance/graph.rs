@@ -120,25 +120,25 @@ impl Graph {
 
     /// The quotient graph.
     pub(crate) fn of_classes(&self, classes: &[usize], count: usize) -> Graph {
-        let mut ways: Vec<BTreeMap<(Observable, usize), usize>> = vec![BTreeMap::new(); count];
+        let mut quotient: Vec<BTreeMap<(Observable, usize), usize>> = vec![BTreeMap::new(); count];
         let mut ends = vec![false; count];
         for (from, out) in self.edges.iter().enumerate() {
             let class = classes[from];
             ends[class] = self.ends[from];
-            for way in
-                out.iter().filter(|way| way.observable != Observable::Nothing || classes[way.to] != class)
+            for edge in
+                out.iter().filter(|edge| edge.observable != Observable::Nothing || classes[edge.to] != class)
             {
-                ways[class].entry((way.observable, classes[way.to])).or_insert(way.edge);
+                quotient[class].entry((edge.observable, classes[edge.to])).or_insert(edge.edge);
             }
         }
-        let way = |((shows, to), edge)| LabelledEdge { observable: shows, to, edge };
+        let edge = |((shows, to), edge)| LabelledEdge { observable: shows, to, edge };
         let mut initial: Vec<usize> = self.initial.iter().map(|&state| classes[state]).collect();
         initial.sort_unstable();
         initial.dedup();
         Graph {
             initial,
             ends,
-            edges: ways.into_iter().map(|ways| ways.into_iter().map(way).collect()).collect(),
+            edges: quotient.into_iter().map(|quotient| quotient.into_iter().map(edge).collect()).collect(),
         }
     }
 }

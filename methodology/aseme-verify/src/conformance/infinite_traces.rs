@@ -46,7 +46,7 @@ pub(crate) fn endlessly(
     let turns = product.turns(language);
     let met = product.satisfying_states(graph, language, &turns, may_end_early);
     let is_met = |at: &ProductState| {
-        at.1.iter().any(|&rest| product.numbers.get(&(at.0, rest)).is_none_or(|&place| met[place]))
+        at.1.iter().any(|&rest| product.numbers.get(&(at.0, rest)).is_none_or(|&position| met[position]))
     };
     match reached.iter().position(|at| !is_met(at)) {
         None => InfiniteTraceResult::Met,
@@ -100,10 +100,10 @@ impl LoopProduct {
         Some(product)
     }
 
-    fn number(&mut self, place: LoopProductState) -> usize {
-        let number = *self.numbers.entry(place).or_insert(self.states.len());
+    fn number(&mut self, index: LoopProductState) -> usize {
+        let number = *self.numbers.entry(index).or_insert(self.states.len());
         if number == self.states.len() {
-            self.states.push(place);
+            self.states.push(index);
         }
         number
     }
@@ -140,18 +140,18 @@ impl LoopProduct {
         for (from, steps) in self.next.iter().enumerate() {
             steps.iter().for_each(|(to, _)| before[*to].push(from));
         }
-        let is_met = |place: usize| {
-            let (state, rest) = self.states[place];
+        let is_met = |index: usize| {
+            let (state, rest) = self.states[index];
             let has_ended = graph.ends[state] && (may_end_early || language.may_end(rest));
             // without required loops the chart may be silent forever; whether it could end is
             // checked elsewhere
-            let is_satisfied = |owed: BTreeSet<LoopId>| owed.is_subset(&turns.begun[turns.of_place[place]]);
+            let is_satisfied = |owed: BTreeSet<LoopId>| owed.is_subset(&turns.begun[turns.of_place[index]]);
             has_ended || language.owed_loops(rest).is_some_and(is_satisfied)
         };
         let mut met: Vec<bool> = (0..self.states.len()).map(is_met).collect();
-        let mut open: Vec<usize> = (0..met.len()).filter(|&place| met[place]).collect();
-        while let Some(place) = open.pop() {
-            for &earlier in &before[place] {
+        let mut open: Vec<usize> = (0..met.len()).filter(|&position| met[position]).collect();
+        while let Some(state) = open.pop() {
+            for &earlier in &before[state] {
                 if !std::mem::replace(&mut met[earlier], true) {
                     open.push(earlier);
                 }
@@ -166,10 +166,10 @@ impl LoopProduct {
             at.1.iter().filter_map(|&rest| self.numbers.get(&(at.0, rest)).copied()).collect();
         let (mut seen, mut open): (BTreeSet<usize>, Vec<usize>) = (first.iter().copied().collect(), first);
         let (mut owed, mut begun) = (BTreeSet::new(), BTreeSet::new());
-        while let Some(place) = open.pop() {
-            owed.extend(language.owed_loops(self.states[place].1).unwrap_or_default());
-            begun.extend(&turns.begun[turns.of_place[place]]);
-            open.extend(self.next[place].iter().map(|(to, _)| *to).filter(|to| seen.insert(*to)));
+        while let Some(index) = open.pop() {
+            owed.extend(language.owed_loops(self.states[index].1).unwrap_or_default());
+            begun.extend(&turns.begun[turns.of_place[index]]);
+            open.extend(self.next[index].iter().map(|(to, _)| *to).filter(|to| seen.insert(*to)));
         }
         owed.difference(&begun).map(|&number| language.endless(number).to_owned()).collect()
     }

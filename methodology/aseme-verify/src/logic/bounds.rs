@@ -180,9 +180,9 @@ impl BoundMatrix {
             }
             let row = &mut self.bounds[from * self.size..][..self.size];
             for (to, after) in &onwards {
-                let way = before.plus(*after);
-                if way.is_tighter(row[*to]) {
-                    row[*to] = way;
+                let sum = before.plus(*after);
+                if sum.is_tighter(row[*to]) {
+                    row[*to] = sum;
                 }
             }
         }

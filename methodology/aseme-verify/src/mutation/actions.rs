@@ -59,25 +59,25 @@ fn of_node(
         let what = format!("{when} {} {changed:?}", id.0);
         *actions(chart.node_mut(id)) = changed;
         let names = &making.names;
-        let place = (format!("{} {when}", names.name(id)), names.path(id));
-        making.add(&what, place, yase::Span::default(), description, chart);
+        let element = (format!("{} {when}", names.name(id)), names.path(id));
+        making.add(&what, element, yase::Span::default(), description, chart);
     }
 }
 
 fn variants(actions: &[Action]) -> Vec<ActionVariant> {
     let mut found = Vec::new();
-    for (place, action) in actions.iter().enumerate() {
+    for (index, action) in actions.iter().enumerate() {
         if let ActionKind::StartTimeout { timer, delay, form } = &action.kind {
             for other in [*delay / 2, *delay * 2] {
                 let mut changed = actions.to_vec();
-                changed[place].kind =
+                changed[index].kind =
                     ActionKind::StartTimeout { timer: timer.clone(), delay: other, form: *form };
                 let description = timed(&timer.text(), *delay, other);
                 found.push(ActionVariant { description, actions: changed, unstarted: None });
             }
         }
         let mut rest = actions.to_vec();
-        rest.remove(place);
+        rest.remove(index);
         found.push(gone(action, rest));
     }
     found

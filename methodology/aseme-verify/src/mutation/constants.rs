@@ -31,8 +31,8 @@ pub(crate) fn all(making: &mut MutantCollector<'_>) {
     for (_, transition) in making.chart.transitions() {
         transition.expression.guard.iter().for_each(|guard| names(guard, &mut named));
     }
-    let spans = places(making);
-    for (place, constant) in making.chart.constants.iter().enumerate() {
+    let spans = constant_spans(making);
+    for (index, constant) in making.chart.constants.iter().enumerate() {
         let ConstantValue::Number(value) = constant.value else { continue };
         if !named.contains(&constant.name) {
             continue;
@@ -40,13 +40,13 @@ pub(crate) fn all(making: &mut MutantCollector<'_>) {
         let span = spans.iter().find(|(name, _)| *name == constant.name).map(|(_, span)| *span);
         for other in around(value) {
             let mut chart = making.chart.clone();
-            chart.constants[place].value = ConstantValue::Number(other);
+            chart.constants[index].value = ConstantValue::Number(other);
             let mutation = MutantDescription {
                 kind: MutationKind::Number,
                 change: format!("the constant is {other} instead of {value}"),
                 wanted: format!("a case in which `{}` and {other} make a difference", constant.name),
             };
-            let what = format!("constant {place} {other}");
+            let what = format!("constant {index} {other}");
             let names = (constant.name.clone(), constant.name.clone());
             making.add(&what, names, span.unwrap_or_default(), mutation, chart);
         }
@@ -62,7 +62,7 @@ fn names(condition: &Expression, found: &mut BTreeSet<String>) {
 }
 
 /// The span of each constant of a role; none for charts in files of their own.
-fn places(making: &MutantCollector<'_>) -> Vec<(String, Span)> {
+fn constant_spans(making: &MutantCollector<'_>) -> Vec<(String, Span)> {
     let (file, _) = SrmFile::parse(making.source.text.as_str());
     let of_constants = file.entries().iter().filter(|entry| entry.section == Section::Constants);
     let named = of_constants.filter_map(|entry| {

@@ -103,9 +103,9 @@ const fn neighbour(comparison: Comparison) -> Comparison {
 /// All variants of a condition with one part changed.
 fn variants(condition: &Expression) -> Vec<GuardVariant> {
     let mut found = own(condition);
-    for (place, part) in condition.parts().into_iter().enumerate() {
+    for (index, part) in condition.parts().into_iter().enumerate() {
         for variant in variants(part) {
-            let guard = with_part(condition, place, variant.guard);
+            let guard = with_part(condition, index, variant.guard);
             let wanted = match (variant.kind, &condition.kind) {
                 (MutationKind::Number, ExpressionKind::Compare(..)) => {
                     format!("a case in which `{condition}` and `{guard}` differ")
@@ -158,9 +158,9 @@ fn joined(condition: &Expression, operands: &[Expression]) -> Vec<GuardVariant> 
         let kind = if all { ExpressionKind::And(operands) } else { ExpressionKind::Or(operands) };
         Expression { kind, position: condition.position }
     };
-    let dropped = operands.iter().enumerate().map(|(place, operand)| {
+    let dropped = operands.iter().enumerate().map(|(index, operand)| {
         let mut rest = operands.to_vec();
-        rest.remove(place);
+        rest.remove(index);
         let guard = match rest.as_slice() {
             [one] => one.clone(),
             _ => join(rest, is_and),
@@ -216,21 +216,21 @@ fn negative(number: Expression) -> Expression {
 }
 
 /// A condition with one of its [parts](Expression::parts) replaced.
-fn with_part(condition: &Expression, place: usize, part: Expression) -> Expression {
+fn with_part(condition: &Expression, index: usize, part: Expression) -> Expression {
     let mut changed = condition.clone();
     let found = match &mut changed.kind {
         ExpressionKind::Or(operands) | ExpressionKind::And(operands) | ExpressionKind::Call(_, operands) => {
-            operands.get_mut(place)
+            operands.get_mut(index)
         }
         ExpressionKind::Not(inner) | ExpressionKind::Negative(inner) => Some(&mut **inner),
-        ExpressionKind::Compare(left, _, right) => Some(if place == 0 { &mut **left } else { &mut **right }),
-        ExpressionKind::Sum(first, rest) => match place.checked_sub(1) {
+        ExpressionKind::Compare(left, _, right) => Some(if index == 0 { &mut **left } else { &mut **right }),
+        ExpressionKind::Sum(first, rest) => match index.checked_sub(1) {
             None => Some(&mut **first),
-            Some(place) => rest.get_mut(place).map(|(_, part)| part),
+            Some(position) => rest.get_mut(position).map(|(_, part)| part),
         },
-        ExpressionKind::Product(first, rest) => match place.checked_sub(1) {
+        ExpressionKind::Product(first, rest) => match index.checked_sub(1) {
             None => Some(&mut **first),
-            Some(place) => rest.get_mut(place).map(|(_, part)| part),
+            Some(position) => rest.get_mut(position).map(|(_, part)| part),
         },
         _ => None,
     };

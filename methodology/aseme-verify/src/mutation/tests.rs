@@ -16,10 +16,10 @@ fn of(text: &str) -> Vec<Mutant> {
 }
 
 /// The descriptions of the mutants whose names start with an element.
-fn descriptions(mutants: &[Mutant], place: &str) -> Vec<String> {
+fn descriptions(mutants: &[Mutant], element: &str) -> Vec<String> {
     let here = mutants.iter().filter_map(|mutant| {
-        let name = mutant.name.strip_prefix(place)?.strip_prefix(" #")?;
-        Some(format!("{name}{}", &mutant.description[place.len()..]))
+        let name = mutant.name.strip_prefix(element)?.strip_prefix(" #")?;
+        Some(format!("{name}{}", &mutant.description[element.len()..]))
     });
     here.collect()
 }
@@ -84,10 +84,10 @@ fn each_mutant_has_the_span_of_its_change_and_is_unique() {
     let source = Source::new("r.srm", ROLE);
     let mutants = of(ROLE);
     let (chart, _) = aseme_models::statechart_of(&source);
-    for (place, mutant) in mutants.iter().enumerate() {
+    for (index, mutant) in mutants.iter().enumerate() {
         assert!(mutant.chart != chart, "{}", mutant.name);
         assert!(
-            mutants[..place].iter().all(|it| it.chart != mutant.chart && it.name != mutant.name),
+            mutants[..index].iter().all(|it| it.chart != mutant.chart && it.name != mutant.name),
             "{}",
             mutant.name
         );

@@ -42,8 +42,8 @@ fn sibling(chart: &Statechart, node: NodeId) -> Option<NodeId> {
         matches!(kind, NodeKind::Or | NodeKind::And | NodeKind::Basic | NodeKind::End)
     };
     let children = chart.children(parent);
-    let place = children.iter().position(|&child| child == node)?;
-    let after = children.iter().skip(place + 1).chain(children.iter().take(place));
+    let index = children.iter().position(|&child| child == node)?;
+    let after = children.iter().skip(index + 1).chain(children.iter().take(index));
     after.copied().find(is_state)
 }
 
@@ -100,8 +100,8 @@ fn next(chart: &Statechart, id: TransitionId) -> Option<TransitionId> {
         let it = chart.transition(id);
         (Reverse(it.priority), it.expression.guard.is_none(), id)
     };
-    let ways = chart.transitions().filter(|(_, it)| is_beside(it)).map(|(id, _)| id);
-    ways.filter(|&other| rank(other) > rank(id)).min_by_key(|&other| rank(other))
+    let siblings = chart.transitions().filter(|(_, it)| is_beside(it)).map(|(id, _)| id);
+    siblings.filter(|&other| rank(other) > rank(id)).min_by_key(|&other| rank(other))
 }
 
 /// Whether the order of two transitions has an effect: both may be enabled and their effects

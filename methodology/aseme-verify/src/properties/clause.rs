@@ -39,8 +39,8 @@ impl Clause {
 
     fn one(plan: &CompiledProperty, obligation: usize, deadline: u64) -> Clause {
         let mut clause = Clause { obligations: 1 << obligation, ..Clause::TRUE };
-        if let Some((_, Some(place))) = plan.obligations.get(obligation) {
-            clause.deadlines[*place] = deadline;
+        if let Some((_, Some(index))) = plan.obligations.get(obligation) {
+            clause.deadlines[*index] = deadline;
         }
         clause
     }
@@ -48,12 +48,12 @@ impl Clause {
     /// The conjunction of two clauses.
     fn and(&self, other: &Clause, plan: &CompiledProperty) -> Clause {
         let mut both = Clause { obligations: self.obligations | other.obligations, ..*self };
-        for (obligation, place, is_until) in bounded(plan) {
-            both.deadlines[place] = match (self.has(obligation), other.has(obligation)) {
-                (true, true) if is_until => self.deadlines[place].min(other.deadlines[place]),
-                (true, true) => self.deadlines[place].max(other.deadlines[place]),
-                (false, true) => other.deadlines[place],
-                _ => self.deadlines[place],
+        for (obligation, index, is_until) in bounded(plan) {
+            both.deadlines[index] = match (self.has(obligation), other.has(obligation)) {
+                (true, true) if is_until => self.deadlines[index].min(other.deadlines[index]),
+                (true, true) => self.deadlines[index].max(other.deadlines[index]),
+                (false, true) => other.deadlines[index],
+                _ => self.deadlines[index],
             };
         }
         both
@@ -62,11 +62,11 @@ impl Clause {
     /// Whether this clause implies the other.
     fn implies(&self, other: &Clause, plan: &CompiledProperty) -> bool {
         other.obligations & !self.obligations == 0
-            && bounded(plan).all(|(obligation, place, is_until)| {
+            && bounded(plan).all(|(obligation, index, is_until)| {
                 !other.has(obligation)
                     || match is_until {
-                        true => self.deadlines[place] <= other.deadlines[place],
-                        false => self.deadlines[place] >= other.deadlines[place],
+                        true => self.deadlines[index] <= other.deadlines[index],
+                        false => self.deadlines[index] >= other.deadlines[index],
                     }
             })
     }
@@ -74,13 +74,13 @@ impl Clause {
     /// The clause at a time between steps; `None` if an obligation can no longer be met.
     pub(crate) fn at_time(&self, now: u64, plan: &CompiledProperty) -> Option<Clause> {
         let mut left = *self;
-        for (obligation, place, is_until) in bounded(plan) {
-            if self.has(obligation) && self.deadlines[place] < now {
+        for (obligation, index, is_until) in bounded(plan) {
+            if self.has(obligation) && self.deadlines[index] < now {
                 if is_until {
                     return None;
                 }
                 left.obligations &= !(1 << obligation);
-                left.deadlines[place] = 0;
+                left.deadlines[index] = 0;
             }
         }
         Some(left)
@@ -88,9 +88,9 @@ impl Clause {
 
     /// The deadlines relative to a later time.
     pub(crate) fn shifted(mut self, by: u64, plan: &CompiledProperty) -> Clause {
-        for (obligation, place, _) in bounded(plan) {
+        for (obligation, index, _) in bounded(plan) {
             if self.has(obligation) {
-                self.deadlines[place] = self.deadlines[place].saturating_sub(by);
+                self.deadlines[index] = self.deadlines[index].saturating_sub(by);
             }
         }
         self
@@ -100,7 +100,7 @@ impl Clause {
     pub(crate) fn first_deadline(&self, plan: &CompiledProperty) -> Option<u64> {
         bounded(plan)
             .filter(|(obligation, ..)| self.has(*obligation))
-            .map(|(_, place, _)| self.deadlines[place])
+            .map(|(_, index, _)| self.deadlines[index])
             .min()
     }
 
@@ -114,8 +114,8 @@ impl Clause {
 
 /// The bounded obligations: index, index of the deadline, and whether it is an `until`.
 fn bounded(plan: &CompiledProperty) -> impl Iterator<Item = (usize, usize, bool)> {
-    plan.obligations.iter().enumerate().filter_map(|(obligation, &(term, place))| {
-        Some((obligation, place?, matches!(plan.terms[term], Subformula::Until { .. })))
+    plan.obligations.iter().enumerate().filter_map(|(obligation, &(term, index))| {
+        Some((obligation, index?, matches!(plan.terms[term], Subformula::Until { .. })))
     })
 }
 
@@ -165,10 +165,10 @@ impl Scratch {
         for clause in from {
             let begin = self.clauses.len();
             self.push(Clause::TRUE)?;
-            for (obligation, &(term, place)) in plan.obligations.iter().enumerate() {
+            for (obligation, &(term, index)) in plan.obligations.iter().enumerate() {
                 if clause.has(obligation) {
                     let middle = self.clauses.len();
-                    let deadline = place.map_or(u64::MAX, |place| clause.deadlines[place]);
+                    let deadline = index.map_or(u64::MAX, |position| clause.deadlines[position]);
                     self.expand(plan, term, Some(deadline), at)?;
                     self.product(begin, middle, plan)?;
                 }

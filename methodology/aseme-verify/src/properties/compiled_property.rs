@@ -171,7 +171,7 @@ impl<F: FnMut(&PropertyFormula) -> Option<AtomicProposition>> Lowering<F> {
         let Some(atom) = (self.atom)(formula) else { return Ok(self.add(Subformula::Constant(false))) };
         let known = self.plan.atoms.iter().position(|other| *other == atom);
         let atom = match known {
-            Some(place) => place,
+            Some(index) => index,
             None if self.plan.atoms.len() == MAX_ATOMS => {
                 return Err(TooLarge("different things about states, events and messages", MAX_ATOMS));
             }
@@ -220,9 +220,9 @@ impl<F: FnMut(&PropertyFormula) -> Option<AtomicProposition>> Lowering<F> {
             true => Subformula::Until { obligation, left, right, bound },
             false => Subformula::Release { obligation, left, right, bound },
         };
-        let place = self.add(term);
-        self.plan.obligations.push((place, deadline));
-        Ok(place)
+        let index = self.add(term);
+        self.plan.obligations.push((index, deadline));
+        Ok(index)
     }
 
     fn add(&mut self, term: Subformula) -> usize {

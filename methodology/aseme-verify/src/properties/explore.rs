@@ -79,8 +79,8 @@ fn confirmed(
     run: &Violation,
     settings: &CheckSettings,
 ) -> Result<(), Unconfirmed> {
-    let way: Vec<usize> = run.prefix.iter().chain(&run.cycle).chain(&run.cycle).copied().collect();
-    let replayed = |sources| replayed(abstraction, plan, found, &way, sources);
+    let indices: Vec<usize> = run.prefix.iter().chain(&run.cycle).chain(&run.cycle).copied().collect();
+    let replayed = |sources| replayed(abstraction, plan, found, &indices, sources);
     let is_own = |path: &Path| abstraction.is_assigned(path);
     let alone = replayed(MessageSources { is_own: &is_own, announced: abstraction.awaited.clone() });
     if alone.is_ok() || abstraction.assignments.iter().all(Option::is_none) {
@@ -94,20 +94,20 @@ fn replayed(
     abstraction: &Abstraction,
     plan: &CompiledProperty,
     found: &LabelledGraph,
-    way: &[usize],
+    indices: &[usize],
     sources: MessageSources<'_>,
 ) -> Result<(), Unconfirmed> {
     let chart = &abstraction.chart;
     let idle = yase_explore::idle_regions(chart, &idle(chart.statechart(), plan));
     let mut replay = RunReplay::new(abstraction, idle, sources);
-    let trace = found.trace_along(way);
-    for ((number, step), &place) in trace.steps().iter().enumerate().zip(way) {
+    let trace = found.trace_along(indices);
+    for ((number, step), &index) in trace.steps().iter().enumerate().zip(indices) {
         let at = |why: String| {
             let reason = format!("at step {}, `{}`: {why}", number + 1, first_line(&trace, step));
             Unconfirmed { step: number, reason }
         };
         replay.step(step).map_err(at)?;
-        let known = &found.steps()[place];
+        let known = &found.steps()[index];
         if replay.configuration() != found.states()[known.to].configuration {
             return Err(at("the machine comes to other states".into()));
         }
@@ -205,11 +205,11 @@ fn trace_text(
     chart: &CompiledChart,
     pace: Option<ClockModel>,
 ) -> String {
-    let way: Vec<usize> = violation.prefix.iter().chain(&violation.cycle).copied().collect();
-    let trace = found.trace_along(&way);
+    let indices: Vec<usize> = violation.prefix.iter().chain(&violation.cycle).copied().collect();
+    let trace = found.trace_along(&indices);
     let mut text = String::new();
-    for (index, (&place, step)) in way.iter().zip(trace.steps()).enumerate() {
-        let known = &found.steps()[place];
+    for (index, (&position, step)) in indices.iter().zip(trace.steps()).enumerate() {
+        let known = &found.steps()[position];
         if index == violation.prefix.len() {
             text += "# repeats forever from here\n";
         }

@@ -63,7 +63,7 @@ impl Parser<'_> {
         let begins =
             |token: &Token| token.kind == PropertyTokenKind::Word && self.text_of(token.span) == "property";
         let rest = self.tokens.iter().skip(self.next).position(begins);
-        self.next = rest.map_or(self.tokens.len() - 1, |place| self.next + place);
+        self.next = rest.map_or(self.tokens.len() - 1, |index| self.next + index);
     }
 
     fn property(&mut self) -> Parsed<Property> {

@@ -96,14 +96,14 @@ impl Candidates<'_, '_> {
             let Err(unconfirmed) = (self.confirm)(&candidate) else { return Some(candidate) };
             self.first.get_or_insert_with(|| (run.clone(), unconfirmed.reason));
             // the second turn of a circle is made of the same steps
-            let place = match unconfirmed.step {
+            let index = match unconfirmed.step {
                 step if step < chosen.len() => step,
                 step => step.saturating_sub(run.cycle.len()).min(chosen.len().checked_sub(1)?),
             };
-            let has_more = |&place: &usize| chosen[place] + 1 < alternatives[place].len();
-            let place = (0..=place).rev().find(has_more)?;
-            chosen[place] += 1;
-            chosen[place + 1..].fill(0);
+            let has_more = |&position: &usize| chosen[position] + 1 < alternatives[position].len();
+            let last = (0..=index).rev().find(has_more)?;
+            chosen[last] += 1;
+            chosen[last + 1..].fill(0);
             let steps = candidate.prefix.iter_mut().chain(&mut candidate.cycle);
             for (step, (alternatives, chosen)) in steps.zip(alternatives.iter().zip(&chosen)) {
                 *step = alternatives[*chosen];
@@ -117,10 +117,10 @@ impl Candidates<'_, '_> {
 fn outgoing(found: &LabelledGraph) -> (Vec<Vec<usize>>, Vec<usize>) {
     let mut from = vec![Vec::new(); found.states().len()];
     let mut begin = Vec::new();
-    for (place, step) in found.steps().iter().enumerate() {
+    for (index, step) in found.steps().iter().enumerate() {
         match step.from {
-            Some(state) => from[state].push(place),
-            None => begin.push(place),
+            Some(state) => from[state].push(index),
+            None => begin.push(index),
         }
     }
     (from, begin)
@@ -148,8 +148,8 @@ struct ProductSearch<'a> {
 }
 
 impl<'a> ProductSearch<'a> {
-    fn step(&self, place: usize) -> &'a LabelledStep {
-        &self.found.steps()[place]
+    fn step(&self, index: usize) -> &'a LabelledStep {
+        &self.found.steps()[index]
     }
 
     /// The shortest run at whose end the property is violated.
@@ -163,15 +163,15 @@ impl<'a> ProductSearch<'a> {
                 self.is_whole = false;
                 continue;
             }
-            if let Some(way) = self.arrive(None, step, &stack, &mut open, candidates) {
-                return Some(way);
+            if let Some(found) = self.arrive(None, step, &stack, &mut open, candidates) {
+                return Some(found);
             }
         }
-        while let Some(place) = open.pop_front() {
-            let ProductPosition { state, clause, .. } = self.positions[place];
+        while let Some(index) = open.pop_front() {
+            let ProductPosition { state, clause, .. } = self.positions[index];
             if self.may_end(state) && !clause.awaits(self.contrary) {
-                let run = Violation { prefix: self.path_to(Some(place)), cycle: Vec::new() };
-                let alternatives = self.alternatives_to(Some(place));
+                let run = Violation { prefix: self.path_to(Some(index)), cycle: Vec::new() };
+                let alternatives = self.alternatives_to(Some(index));
                 if let Some(run) = candidates.confirmed(run, &alternatives) {
                     return Some(run);
                 }
@@ -182,8 +182,8 @@ impl<'a> ProductSearch<'a> {
                     self.is_whole = false;
                     continue;
                 }
-                if let Some(way) = self.arrive(Some(place), step, &stack, &mut open, candidates) {
-                    return Some(way);
+                if let Some(found) = self.arrive(Some(index), step, &stack, &mut open, candidates) {
+                    return Some(found);
                 }
             }
         }
@@ -207,18 +207,18 @@ impl<'a> ProductSearch<'a> {
         let LabelledStep { to, elapsed, .. } = *self.step(step);
         for clause in stack.clauses() {
             if clause.is_true() {
-                let mut way = self.path_to(from);
-                way.push(step);
+                let mut indices = self.path_to(from);
+                indices.push(step);
                 let mut alternatives = self.alternatives_to(from);
                 alternatives.push(vec![step]);
-                match candidates.confirmed(Violation { prefix: way, cycle: Vec::new() }, &alternatives) {
+                match candidates.confirmed(Violation { prefix: indices, cycle: Vec::new() }, &alternatives) {
                     Some(run) => return Some(run),
                     None => continue,
                 }
             }
             let clause = clause.shifted(elapsed, self.contrary);
             let count = self.positions.len();
-            let place = match self.numbers.entry((to, clause)) {
+            let index = match self.numbers.entry((to, clause)) {
                 Entry::Occupied(known) => *known.get(),
                 Entry::Vacant(_) if count == self.limit => {
                     self.is_whole = false;
@@ -233,7 +233,7 @@ impl<'a> ProductSearch<'a> {
                 }
             };
             if let Some(from) = from {
-                self.next[from].push((place, step));
+                self.next[from].push((index, step));
             }
         }
         None
@@ -249,26 +249,26 @@ impl<'a> ProductSearch<'a> {
     }
 
     /// The alternatives at each step of the path to a place.
-    fn alternatives_to(&self, mut place: Option<usize>) -> Vec<Vec<usize>> {
+    fn alternatives_to(&self, mut index: Option<usize>) -> Vec<Vec<usize>> {
         let mut found = Vec::new();
-        while let Some(at) = place {
+        while let Some(at) = index {
             let (before, step) = self.positions[at].predecessor;
             found.push(before.map_or_else(|| vec![step], |before| self.alternatives(before, at, step)));
-            place = before;
+            index = before;
         }
         found.reverse();
         found
     }
 
-    fn path_to(&self, mut place: Option<usize>) -> Vec<usize> {
-        let mut way = Vec::new();
-        while let Some(at) = place {
+    fn path_to(&self, mut index: Option<usize>) -> Vec<usize> {
+        let mut indices = Vec::new();
+        while let Some(at) = index {
             let (before, step) = self.positions[at].predecessor;
-            way.push(step);
-            place = before;
+            indices.push(step);
+            index = before;
         }
-        way.reverse();
-        way
+        indices.reverse();
+        indices
     }
 }
 
@@ -282,8 +282,8 @@ impl CycleSearch<'_> {
     fn find(&self, runs: &mut Candidates<'_, '_>) -> Option<Violation> {
         let components = strongly_connected_components(&self.search.next);
         let mut members: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
-        for (place, &component) in components.iter().enumerate() {
-            members.entry(component).or_default().push(place);
+        for (index, &component) in components.iter().enumerate() {
+            members.entry(component).or_default().push(index);
         }
         // the component that was reached first
         let mut candidates: Vec<(usize, Vec<usize>)> = members.into_values().map(|it| (it[0], it)).collect();
@@ -311,14 +311,14 @@ impl CycleSearch<'_> {
         let mut stops = Vec::new();
         for (obligation, &(term, _)) in search.contrary.obligations.iter().enumerate() {
             if matches!(search.contrary.terms[term], Subformula::Until { bound: None, .. }) {
-                let met = |place: &&usize| !search.positions[**place].clause.has(obligation);
+                let met = |index: &&usize| !search.positions[**index].clause.has(obligation);
                 stops.push(CycleStop::Place(*inside.iter().find(met)?));
             }
         }
         let steps = || {
-            inside.iter().flat_map(|&place| {
-                let next = search.next[place].iter().filter(|(to, _)| inside.contains(to));
-                next.map(move |&(to, step)| (place, to, step))
+            inside.iter().flat_map(|&position| {
+                let next = search.next[position].iter().filter(|(to, _)| inside.contains(to));
+                next.map(move |&(to, step)| (position, to, step))
             })
         };
         steps().next()?;
@@ -327,10 +327,10 @@ impl CycleSearch<'_> {
             stops.push(CycleStop::Step(from, to, step));
             return Some(stops);
         }
-        let pending = |place: usize| &search.found.states()[search.positions[place].state].pending;
+        let pending = |position: usize| &search.found.states()[search.positions[position].state].pending;
         let first = *inside.first()?;
         let always =
-            pending(first).iter().filter(|it| inside.iter().all(|&place| pending(place).contains(it)));
+            pending(first).iter().filter(|it| inside.iter().all(|&position| pending(position).contains(it)));
         for &waiting in always {
             let ends =
                 |&(.., step): &(usize, usize, usize)| search.step(step).ends == Some::<PendingEvent>(waiting);
@@ -338,8 +338,8 @@ impl CycleSearch<'_> {
             stops.push(CycleStop::Step(from, to, step));
         }
         for &waiting in pending(first) {
-            if let Some(&place) = inside.iter().find(|&&place| !pending(place).contains(&waiting)) {
-                stops.push(CycleStop::Place(place));
+            if let Some(&position) = inside.iter().find(|&&position| !pending(position).contains(&waiting)) {
+                stops.push(CycleStop::Place(position));
             }
         }
         Some(stops)
@@ -350,11 +350,11 @@ impl CycleSearch<'_> {
         let (mut at, mut circle) = (first, Vec::new());
         for stop in stops {
             match *stop {
-                CycleStop::Place(place) => circle.extend(self.path_within(at, place, inside)?),
+                CycleStop::Place(index) => circle.extend(self.path_within(at, index, inside)?),
                 CycleStop::Step(from, ..) => circle.extend(self.path_within(at, from, inside)?),
             }
             at = match *stop {
-                CycleStop::Place(place) => place,
+                CycleStop::Place(position) => position,
                 CycleStop::Step(_, to, step) => {
                     circle.push(step);
                     to
@@ -375,13 +375,13 @@ impl CycleSearch<'_> {
         let mut open = VecDeque::from([from]);
         while let Some(at) = open.pop_front() {
             if at == to {
-                let (mut way, mut at) = (Vec::new(), at);
+                let (mut indices, mut at) = (Vec::new(), at);
                 while let Some(Some((before, step))) = came.get(&at) {
-                    way.push(*step);
+                    indices.push(*step);
                     at = *before;
                 }
-                way.reverse();
-                return Some(way);
+                indices.reverse();
+                return Some(indices);
             }
             for &(next, step) in self.search.next[at].iter().filter(|(next, _)| inside.contains(next)) {
                 if let Entry::Vacant(entry) = came.entry(next) {

@@ -12,8 +12,8 @@ use aseme_models::transformations::{ShapeMatch, same_shape};
 
 /// Whether a node is another or lies inside it.
 pub(crate) fn is_inside(chart: &Iac, node: usize, outer: usize) -> bool {
-    let mut way = std::iter::successors(Some(node), |&node| chart.nodes.get(node)?.parent);
-    way.any(|node| node == outer)
+    let mut ancestors = std::iter::successors(Some(node), |&node| chart.nodes.get(node)?.parent);
+    ancestors.any(|node| node == outer)
 }
 
 /// Checks the CONDITIONs inside a part: optional activities need a guard, and at most one branch of
@@ -23,52 +23,54 @@ pub(crate) fn guarded(chart: &Iac, part: usize, found: &mut Conformance) {
         .filter(|&node| chart.nodes[node].kind == "CONDITION" && is_inside(chart, node, part));
     let names = names(chart);
     for condition in conditions {
-        let ways: Vec<&IacTransition> =
+        let transitions: Vec<&IacTransition> =
             chart.transitions.iter().filter(|it| it.source == condition).collect();
-        let ends = |way: &&&IacTransition| chart.nodes[way.target].kind == "END";
-        let may_be_left_out = ways.iter().any(|way| ends(&way));
-        let open: Vec<&&IacTransition> =
-            ways.iter().filter(|way| !ends(way) && guard(way).is_none()).collect();
+        let ends = |transition: &&&IacTransition| chart.nodes[transition.target].kind == "END";
+        let may_be_left_out = transitions.iter().any(|transition| ends(&transition));
+        let open: Vec<&&IacTransition> = transitions
+            .iter()
+            .filter(|transition| !ends(transition) && guard(transition).is_none())
+            .collect();
         let spared = if may_be_left_out { 0 } else { 1 };
-        for way in open.iter().skip(spared) {
-            let name = names.name(NodeId(way.target as u32));
+        for transition in open.iter().skip(spared) {
+            let name = names.name(NodeId(transition.target as u32));
             let message = format!("`{name}` is always executed: its transition has no guard");
             let hint = "add a guard";
-            found.report("E0866", way.position.0, message, hint);
+            found.report("E0866", transition.position.0, message, hint);
         }
     }
 }
 
 /// Checks that a player's composite equals the part of a protocol's chart: states, transitions,
 /// engaging rules and exits.
-pub(crate) fn contained(player: &Iac, place: usize, eac: &Iac, part: usize, found: &mut Conformance) {
+pub(crate) fn contained(player: &Iac, index: usize, eac: &Iac, part: usize, found: &mut Conformance) {
     let name = &eac.nodes[part].name;
-    let pairs = match same_shape(eac, part, player, place, ShapeMatch::Refined) {
+    let pairs = match same_shape(eac, part, player, index, ShapeMatch::Refined) {
         Ok(pairs) => pairs,
         Err((wanted, there)) => {
             let message = format!("`{name}` differs from the protocol: {there} instead of {wanted}");
             let hint = "copy the formula of the participant";
-            return found.report("E0862", player.nodes[place].position.0, message, hint);
+            return found.report("E0862", player.nodes[index].position.0, message, hint);
         }
     };
     inside(player, eac, &pairs, found);
-    let (own, theirs) = (BoundaryTransitions::of(player, place), BoundaryTransitions::of(eac, part));
-    for rule in theirs.into.iter().filter_map(|way| guard(way)) {
+    let (own, theirs) = (BoundaryTransitions::of(player, index), BoundaryTransitions::of(eac, part));
+    for rule in theirs.into.iter().filter_map(|transition| guard(transition)) {
         own.engaged_by(player, name, &rule, found);
     }
-    let outcomes: Vec<_> = theirs.out.iter().filter_map(|way| guard(way)).collect();
+    let outcomes: Vec<_> = theirs.out.iter().filter_map(|transition| guard(transition)).collect();
     for outcome in &outcomes {
         own.has_exit(player, name, outcome, found);
     }
     let logic = GuardSolver::new(&player.constants);
-    for way in &own.out {
+    for transition in &own.out {
         let is_exit = |guard: &yase::expression::Expression| {
             matches!(guard.kind, yase::expression::ExpressionKind::Bool(false))
                 || outcomes.iter().any(|outcome| logic.implies(guard, outcome))
         };
-        if let Some(guard) = guard(way).filter(|guard| !is_exit(guard)) {
+        if let Some(guard) = guard(transition).filter(|guard| !is_exit(guard)) {
             let message = format!("`{name}` is left when `{guard}`, which is not an outcome of the protocol");
-            found.report("E0865", way.position.0, message, "make it an outcome, or remove the exit");
+            found.report("E0865", transition.position.0, message, "make it an outcome, or remove the exit");
         }
     }
 }
@@ -123,21 +125,21 @@ fn written(names: &DiagnosticNames, transition: &IacTransition) -> String {
 
 /// The player's part as a chart of its own. Activities of the protocol remain activities, even if
 /// the player refines them into several steps.
-pub(crate) fn alone(player: &Iac, place: usize, eac: &Iac, part: usize) -> Iac {
-    let pairs = same_shape(eac, part, player, place, ShapeMatch::Refined).unwrap_or_default();
+pub(crate) fn alone(player: &Iac, index: usize, eac: &Iac, part: usize) -> Iac {
+    let pairs = same_shape(eac, part, player, index, ShapeMatch::Refined).unwrap_or_default();
     let own: BTreeMap<usize, usize> = pairs.iter().map(|(&theirs, &own)| (own, theirs)).collect();
-    let places: BTreeMap<usize, usize> = own.keys().enumerate().map(|(new, &old)| (old, new)).collect();
+    let indices: BTreeMap<usize, usize> = own.keys().enumerate().map(|(new, &old)| (old, new)).collect();
     let nodes = own.iter().map(|(&old, &theirs)| {
         let mut node = player.nodes[old].clone();
         node.kind.clone_from(&eac.nodes[theirs].kind);
-        node.parent = node.parent.and_then(|parent| places.get(&parent).copied());
+        node.parent = node.parent.and_then(|parent| indices.get(&parent).copied());
         node.variables.clear();
         node
     });
     let transitions = player.transitions.iter().filter_map(|it| {
-        let (source, target) = (*places.get(&it.source)?, *places.get(&it.target)?);
+        let (source, target) = (*indices.get(&it.source)?, *indices.get(&it.target)?);
         Some(IacTransition { source, target, ..it.clone() })
     });
-    let (name, constants) = (player.nodes[place].name.clone(), player.constants.clone());
+    let (name, constants) = (player.nodes[index].name.clone(), player.constants.clone());
     Iac { name, constants, nodes: nodes.collect(), transitions: transitions.collect(), ..Iac::default() }
 }

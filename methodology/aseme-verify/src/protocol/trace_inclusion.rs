@@ -30,13 +30,13 @@ const DONE: u32 = 2;
 /// engages in it.
 pub(crate) fn in_whole(
     player: &Iac,
-    place: usize,
+    index: usize,
     (eac, part): (&Iac, usize),
     liveness: &Liveness,
     found: &mut Conformance,
 ) {
     let (Some((language, all)), Ok(pairs)) =
-        (Language::new(liveness), same_shape(eac, part, player, place, ShapeMatch::Refined))
+        (Language::new(liveness), same_shape(eac, part, player, index, ShapeMatch::Refined))
     else {
         return;
     };
@@ -45,9 +45,9 @@ pub(crate) fn in_whole(
         Ok(abstraction) => abstraction,
         Err(reasons) => return found.findings.extend(reasons),
     };
-    let shown = ProtocolAlphabet::new(player, eac, place, &pairs, &language);
+    let shown = ProtocolAlphabet::new(player, eac, index, &pairs, &language);
     let explored = shown.explored(&abstraction);
-    let name = &player.nodes[place].name;
+    let name = &player.nodes[index].name;
     let extent = ExplorationExtent::of_labelled(&explored);
     let states = extent.states;
     found.explored.push((format!("{name} within {}", player.name), extent));
@@ -60,7 +60,7 @@ pub(crate) fn in_whole(
             );
             return found.report(
                 "E0869",
-                player.nodes[place].position.0,
+                player.nodes[index].position.0,
                 message,
                 "split it into several charts",
             );
@@ -71,7 +71,7 @@ pub(crate) fn in_whole(
     };
     found.report(
         "E0867",
-        player.nodes[place].position.0,
+        player.nodes[index].position.0,
         message,
         "a transition enters the middle of the part",
     );
@@ -90,13 +90,16 @@ impl ProtocolAlphabet {
     fn new(
         player: &Iac,
         eac: &Iac,
-        place: usize,
+        position: usize,
         pairs: &BTreeMap<usize, usize>,
         language: &Language,
     ) -> ProtocolAlphabet {
         let node = |index: usize| NodeId(index as u32);
-        let mut shown =
-            ProtocolAlphabet { part: node(place), activities: BTreeMap::new(), composites: BTreeMap::new() };
+        let mut shown = ProtocolAlphabet {
+            part: node(position),
+            activities: BTreeMap::new(),
+            composites: BTreeMap::new(),
+        };
         for (&theirs, &own) in pairs {
             let letter = language.find(&eac.nodes[theirs].name);
             if let Some(letter) = letter.filter(|_| eac.nodes[theirs].kind == "BASIC") {
@@ -119,9 +122,12 @@ impl ProtocolAlphabet {
             }),
             pace: None,
             letter: Box::new(|seen: &StepObservation<'_>| {
-                let done = self.done(seen, |way| {
-                    let way = statechart.transition(way);
-                    (way.source, cone_of_influence::is_within(statechart, way.target, self.part))
+                let done = self.done(seen, |transition| {
+                    let transition = statechart.transition(transition);
+                    (
+                        transition.source,
+                        cone_of_influence::is_within(statechart, transition.target, self.part),
+                    )
                 });
                 let bit = |nodes: &[NodeId], bit| if nodes.contains(&self.part) { bit } else { 0 };
                 let letter = done.map_or(0, |letter| u64::from(letter) + 1);
@@ -135,7 +141,7 @@ impl ProtocolAlphabet {
     fn done(
         &self,
         seen: &StepObservation<'_>,
-        way: impl Fn(yase::TransitionId) -> (NodeId, bool),
+        ends_of: impl Fn(yase::TransitionId) -> (NodeId, bool),
     ) -> Option<Symbol> {
         let returned = match seen.cause {
             StepCause::Return(node) => self.activities.get(node),
@@ -143,7 +149,7 @@ impl ProtocolAlphabet {
         };
         let completed = || {
             seen.taken.iter().find_map(|&id| {
-                let (source, stays) = way(id);
+                let (source, stays) = ends_of(id);
                 self.composites.get(&source).filter(|_| stays)
             })
         };

@@ -348,22 +348,22 @@ impl Host for ReplayHost<'_> {
         _: &mut ScriptContext<'_>,
     ) -> Result<(), CallError> {
         self.log.get_mut().known.retain(|(board, ..)| *board != region);
-        let place = region.index();
+        let index = region.index();
         match self.abstraction.assignment(action) {
             Some(assignment) => {
                 let assignment = assignment.clone();
-                let value = self.versioned(&assignment.value, &self.boards[place]);
+                let value = self.versioned(&assignment.value, &self.boards[index]);
                 // else the action would have failed
                 let read = crate::logic::messages(&value);
                 let present = read.iter().map(|message| RunClaim::of(present(message, &value), self.steps));
                 self.log.get_mut().claims.extend(present);
-                self.boards[place].written.push(self.writes.len());
-                let delivery = self.boards[place].delivery;
+                self.boards[index].written.push(self.writes.len());
+                let delivery = self.boards[index].delivery;
                 self.writes.push(Write { assignment, value: value.kind, delivery });
             }
             None if self.abstraction.chart.script(action) == "process_messages" => {
                 self.delivery += 1;
-                self.boards[place] = ReplayBoard { delivery: self.delivery, written: Vec::new() };
+                self.boards[index] = ReplayBoard { delivery: self.delivery, written: Vec::new() };
             }
             None => {
                 self.trouble(format!("what `{}` does is not known", self.abstraction.chart.script(action)))
@@ -393,9 +393,9 @@ impl Host for ReplayHost<'_> {
 
 /// That a message of a part of an expression has arrived.
 fn present(message: &str, part: &Expression) -> Expression {
-    let place = part.position;
-    let segments = message.split('.').map(|text| Name { text: text.to_owned(), position: place }).collect();
-    Expression { kind: ExpressionKind::Present(Path { segments, position: place }), position: place }
+    let position = part.position;
+    let segments = message.split('.').map(|text| Name { text: text.to_owned(), position }).collect();
+    Expression { kind: ExpressionKind::Present(Path { segments, position }), position }
 }
 
 fn message_of(field: &Path) -> Path {

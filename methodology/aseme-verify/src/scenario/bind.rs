@@ -206,9 +206,9 @@ impl ScenarioBinder<'_> {
                 letter == '.' && !is_quoted
             };
             let segments = self.text(part).split(ends_segment).map(|segment| {
-                let place = Span::new(start, start + segment.len());
-                start = place.end + 1;
-                Name { text: segment.trim_matches('`').to_owned(), position: TextPosition(place) }
+                let span = Span::new(start, start + segment.len());
+                start = span.end + 1;
+                Name { text: segment.trim_matches('`').to_owned(), position: TextPosition(span) }
             });
             let path = Path { segments: segments.collect(), position: TextPosition(part) };
             Action { kind: ActionKind::Publish(path), position: TextPosition(part) }

@@ -49,16 +49,16 @@ impl Reader<'_> {
 
     fn link(&mut self, is_model: bool, span: Span, path: &str) {
         let word = if is_model { "model" } else { "after" };
-        let place = if is_model { &mut self.script.model } else { &mut self.script.after };
+        let target = if is_model { &mut self.script.model } else { &mut self.script.after };
         let link = ScenarioLink { path: path.to_owned(), span };
-        let wrong = match (path.is_empty(), &place, self.script.steps.is_empty()) {
+        let wrong = match (path.is_empty(), &target, self.script.steps.is_empty()) {
             (true, ..) => Some(format!("`{word}` names no file")),
             (_, Some(_), _) => Some(format!("a second `{word}`")),
             (_, _, false) => Some(format!("`{word}` after a step")),
             _ => None,
         };
         match wrong {
-            None => *place = Some(link),
+            None => *target = Some(link),
             Some(message) => self.report(
                 Diagnostic::error("E0891", span, message)
                     .with_hint("a scenario starts with one line `model FILE` and optionally `after FILE`"),
@@ -81,12 +81,12 @@ impl Reader<'_> {
     fn starts(&mut self) {
         let goes_on = self.script.after.is_some();
         let mut wrong = Vec::new();
-        for (place, step) in self.script.steps.iter().enumerate() {
+        for (index, step) in self.script.steps.iter().enumerate() {
             let is_start = &self.blanked[step.cause.start..step.cause.end] == "start";
-            if is_start != (place == 0 && !goes_on) {
+            if is_start != (index == 0 && !goes_on) {
                 let message = match is_start {
                     true => "the chart was started already",
-                    false if place == 0 => "the chart was not started",
+                    false if index == 0 => "the chart was not started",
                     false => continue,
                 };
                 let hint = "a scenario starts with the step `start`, unless it is `after` another";

@@ -170,7 +170,7 @@ fn said(model: &str, formula: &str, settings: &CheckSettings) -> Vec<(&'static s
 #[test]
 fn unknown_names_are_reported_with_the_nearest_one() {
     let settings = CheckSettings::default();
-    let one = |code, place: &str, hint: &str| vec![(code, place.to_owned(), hint.to_owned())];
+    let one = |code, text: &str, hint: &str| vec![(code, text.to_owned(), hint.to_owned())];
     assert_eq!(said(WALKER, "always not in Wakl", &settings), one("E0845", "Wakl", "did you mean `Walk`?"));
     let events = "Role: r\nLiveness:\nr = a . b\nTransitions:\na -> b : kick\n";
     assert_eq!(

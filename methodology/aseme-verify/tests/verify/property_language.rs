@@ -212,7 +212,7 @@ fn refused(text: &str) -> (&'static str, String) {
 #[test]
 fn each_mistake_has_a_code_and_a_place() {
     let in_property = |formula: &str| refused(&format!("property \"p\": {formula}"));
-    let is = |code, place: &str| (code, place.to_owned());
+    let is = |code, text: &str| (code, text.to_owned());
     assert_eq!(refused("always in a"), is("E0840", "always"));
     assert_eq!(refused("property p: true"), is("E0840", "p"));
     assert_eq!(refused("property \"p\" true"), is("E0840", "true"));

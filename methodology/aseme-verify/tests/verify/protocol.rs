@@ -54,8 +54,8 @@ fn role(text: &str) -> Iac {
 /// The player with the protocol merged into it.
 fn merged(eac: &Iac) -> Iac {
     let mut player = player();
-    let (places, found) = transformations::merge_eac(&mut player, eac);
-    assert_eq!((places.len(), found), (2, Vec::new()));
+    let (composites, found) = transformations::merge_eac(&mut player, eac);
+    assert_eq!((composites.len(), found), (2, Vec::new()));
     player
 }
 
@@ -151,9 +151,9 @@ fn the_chart_of_the_protocol_and_that_of_the_player_conform() {
 #[test]
 fn a_way_into_the_middle_of_a_part_is_found_in_all_that_the_player_does() {
     let whole = text("extended_attacker.iac");
-    let way = whole.lines().find(|line| line.contains("/CONDITION -> center !1 : ")).unwrap();
-    let middle = way.replace("-> center !1", "-> [passBall] !2");
-    let player = chart(&whole.replace(way, &format!("{way}\n{middle}")));
+    let entry = whole.lines().find(|line| line.contains("/CONDITION -> center !1 : ")).unwrap();
+    let middle = entry.replace("-> center !1", "-> [passBall] !2");
+    let player = chart(&whole.replace(entry, &format!("{entry}\n{middle}")));
     let found = player_conforms(&player, &eac(), &aip());
     assert_eq!(
         said(&found),

@@ -58,9 +58,9 @@ fn merged<'a>(role: &Iac, protocols: impl Iterator<Item = &'a Iac>) -> Iac {
     let mut role = role.clone();
     for eac in protocols {
         let takes_part = parts_taken(&role, eac).iter().any(|(_, is_taken)| *is_taken);
-        let (places, found) = transformations::merge_eac(&mut role, eac);
+        let (composites, found) = transformations::merge_eac(&mut role, eac);
         let codes: Vec<&str> = found.iter().map(|found| found.code).collect();
-        assert_eq!((places.len(), codes), if takes_part { (1, vec![]) } else { (0, vec!["E0837"]) });
+        assert_eq!((composites.len(), codes), if takes_part { (1, vec![]) } else { (0, vec!["E0837"]) });
     }
     role
 }

@@ -215,14 +215,14 @@ impl Parser<'_> {
     }
 
     /// Ends the innermost level whose closing bracket is missing.
-    fn close_missing(&mut self, place: usize) {
+    fn close_missing(&mut self, index: usize) {
         if self.top.bracket == Bracket::Copies {
             return self.leave_copies();
         }
         let Level { bracket, opened, .. } = self.top;
         let message = format!("`{}` is never closed", bracket.opening());
         self.error("E0206", opened, message, &format!("add the missing `{}`", bracket.closing()));
-        self.end_level(Span::new(place, place));
+        self.end_level(Span::new(index, index));
     }
 
     fn end_sequence(&mut self) {
@@ -289,8 +289,8 @@ impl Parser<'_> {
 impl Parser<'_> {
     /// Whether a term starts at a token: then a `|` before it, where an operand is expected, starts
     /// copies.
-    fn begins_term(&self, place: usize) -> bool {
-        let rest = self.text[place..].trim_start();
+    fn begins_term(&self, index: usize) -> bool {
+        let rest = self.text[index..].trim_start();
         rest.starts_with(|c| matches!(c, '(' | '[' | '|') || is_name_character(c))
     }
 

@@ -55,7 +55,7 @@ fn node_wish<'a>(lookup: &Lookup<'_>, path: &Path, entry: &'a LayoutEntry) -> Re
 fn transitions(chart: &mut Statechart, entries: &[LayoutEntry]) -> Vec<UnmatchedEntry> {
     let plain = chart.clone();
     let lookup = Lookup::new(&plain);
-    let twins = places_among_twins(&plain);
+    let twins = indices_among_twins(&plain);
     let of_transitions: Vec<(RefinementTarget<'_, TransitionId>, &LayoutEntry)> = entries
         .iter()
         .filter_map(|entry| match &entry.of {
@@ -92,19 +92,19 @@ fn transition_wish<'a>(
 }
 
 /// The index of a transition among those with the same ends.
-pub fn place_among_twins(chart: &Statechart, id: TransitionId) -> usize {
+pub fn index_among_twins(chart: &Statechart, id: TransitionId) -> usize {
     let Transition { source, target, .. } = *chart.transition(id);
     let before = chart.transitions().take(id.0 as usize);
     before.filter(|(_, other)| (other.source, other.target) == (source, target)).count()
 }
 
 /// The same for all transitions.
-fn places_among_twins(chart: &Statechart) -> Vec<usize> {
+fn indices_among_twins(chart: &Statechart) -> Vec<usize> {
     let mut counts: BTreeMap<(NodeId, NodeId), usize> = BTreeMap::new();
-    let place = |transition: &Transition| {
+    let index = |transition: &Transition| {
         let count = counts.entry((transition.source, transition.target)).or_default();
         *count += 1;
         *count - 1
     };
-    chart.transitions().map(|(_, transition)| transition).map(place).collect()
+    chart.transitions().map(|(_, transition)| transition).map(index).collect()
 }

@@ -127,8 +127,8 @@ impl Modifiers {
 pub(crate) fn modifiers_start(head: &str) -> usize {
     let sign = head.find(['!', '%']);
     let words = ["also", "interrupts", "internal"].into_iter().filter_map(|word| {
-        let mut places = head.match_indices(word).map(|(at, _)| at);
-        places.find(|&at| is_word(head, at, word.len()))
+        let mut found = head.match_indices(word).map(|(at, _)| at);
+        found.find(|&at| is_word(head, at, word.len()))
     });
     sign.into_iter().chain(words).min().unwrap_or(head.len())
 }

@@ -68,7 +68,7 @@ impl Reader {
 
     /// Empty for the transition of the formulas; `also` or `also 2` for those added in parallel.
     fn beside(&mut self, blanked: &str, span: Span) -> Option<usize> {
-        let place = text::trimmed(blanked, span);
+        let word = text::trimmed(blanked, span);
         let words: Vec<&str> = blanked[span.start..span.end].split_whitespace().collect();
         let number = match words.as_slice() {
             [] => Some(0),
@@ -77,10 +77,10 @@ impl Reader {
             _ => None,
         };
         if number.is_none() {
-            let message = format!("`{}` is not a modifier of a transition", &blanked[place.start..place.end]);
+            let message = format!("`{}` is not a modifier of a transition", &blanked[word.start..word.end]);
             let hint =
                 "in a layout a target may be followed by `also`, or `also 2` for the second added transition";
-            self.report(Diagnostic::error("E0242", place, message).with_hint(hint));
+            self.report(Diagnostic::error("E0242", word, message).with_hint(hint));
         }
         number
     }
@@ -103,7 +103,7 @@ impl Reader {
                 return self.report(error.with_nearest(name, keys.iter().copied()));
             }
             "at" => {
-                said.frame.at = layout::place(text);
+                said.frame.at = layout::parse_position(text);
                 (said.frame.at.is_some(), POSITION_FORM)
             }
             "size" => {
@@ -119,8 +119,8 @@ impl Reader {
         };
         if !understood {
             let message = format!("`{text}` is not a value for `{name}`");
-            let place = if value.start < value.end { value } else { key };
-            self.report(Diagnostic::error("E0245", place, message).with_hint(hint));
+            let span = if value.start < value.end { value } else { key };
+            self.report(Diagnostic::error("E0245", span, message).with_hint(hint));
         }
     }
 }

@@ -59,10 +59,10 @@ impl Reader {
                 (Some(key), _) => settings.push((key.0, text::trimmed(blanked, Span::new(key.1, piece.end)))),
                 (None, Some((_, value))) => value.end = text::trimmed(blanked, piece).end.max(value.end),
                 (None, None) => {
-                    let place = text::trimmed(blanked, span);
+                    let setting = text::trimmed(blanked, span);
                     let hint = format!("keys are {}", keys.join(", "));
                     self.report(
-                        Diagnostic::error("E0243", place, "a setting is `key = value`").with_hint(hint),
+                        Diagnostic::error("E0243", setting, "a setting is `key = value`").with_hint(hint),
                     );
                     return settings;
                 }
@@ -91,8 +91,8 @@ impl Reader {
         };
         if !understood {
             let message = format!("`{text}` is not a value for `{name}`");
-            let place = if value.start < value.end { value } else { key };
-            self.report(Diagnostic::error("E0245", place, message).with_hint(expected(name)));
+            let span = if value.start < value.end { value } else { key };
+            self.report(Diagnostic::error("E0245", span, message).with_hint(expected(name)));
         }
     }
 
@@ -114,9 +114,9 @@ struct StateSettings {
     history: Option<NodeKind>,
 }
 
-fn set<T>(place: &mut Option<T>, value: Option<T>) -> bool {
+fn set<T>(target: &mut Option<T>, value: Option<T>) -> bool {
     let understood = value.is_some();
-    *place = value;
+    *target = value;
     understood
 }
 

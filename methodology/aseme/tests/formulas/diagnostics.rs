@@ -9,12 +9,12 @@ fn findings(text: &str) -> Vec<Diagnostic> {
 
 /// Asserts that a text has one finding with this code, text at its span, and part of its message or
 /// hint.
-fn check(text: &str, code: &str, place: &str, says: &str) {
+fn check(text: &str, code: &str, marked: &str, says: &str) {
     let found = findings(text);
     let [finding] = found.as_slice() else { panic!("{text:?}: {found:?}") };
     let said = format!("{} / {}", finding.message, finding.hint.as_deref().unwrap_or_default());
     assert_eq!(finding.code, code, "{text:?}: {finding}");
-    assert_eq!(&text[finding.span.start..finding.span.end], place, "{text:?}: {finding}");
+    assert_eq!(&text[finding.span.start..finding.span.end], marked, "{text:?}: {finding}");
     assert!(said.contains(says), "{text:?}: {finding}");
 }
 
@@ -128,8 +128,8 @@ fn sections_are_known() {
 
 #[test]
 fn constants_are_values_with_names() {
-    let check = |line: &str, code, place, says| {
-        check(&format!("Liveness:\nr = a\nConstants:\n{line}\n"), code, place, says)
+    let check = |line: &str, code, marked, says| {
+        check(&format!("Liveness:\nr = a\nConstants:\n{line}\n"), code, marked, says)
     };
     check("near", "E0237", "near", "name = value");
     check("2near = 1", "E0237", "2near = 1", "starts with an ASCII letter");
@@ -139,8 +139,8 @@ fn constants_are_values_with_names() {
 
 #[test]
 fn transition_entries_are_well_formed() {
-    let check = |line: &str, code, place, says| {
-        check(&format!("Liveness:\nr = a . b\nTransitions:\n{line}\n"), code, place, says)
+    let check = |line: &str, code, marked, says| {
+        check(&format!("Liveness:\nr = a . b\nTransitions:\n{line}\n"), code, marked, says)
     };
     check("a b : [false]", "E0240", "a b : [false]", "source -> target");
     check("a/ -> b", "E0241", "a/", "missing in the path");
@@ -151,8 +151,8 @@ fn transition_entries_are_well_formed() {
 
 #[test]
 fn state_entries_are_well_formed() {
-    let check = |line: &str, code, place, says| {
-        check(&format!("Liveness:\nr = a . b\nStates:\n{line}\n"), code, place, says)
+    let check = |line: &str, code, marked, says| {
+        check(&format!("Liveness:\nr = a . b\nStates:\n{line}\n"), code, marked, says)
     };
     check("a", "E0243", "a", "path : key = value");
     check("a : 5", "E0243", "5", "keys are");
@@ -164,8 +164,8 @@ fn state_entries_are_well_formed() {
 
 #[test]
 fn entries_name_one_thing() {
-    let check = |lines: &str, code, place, says| {
-        check(&format!("Liveness:\nr = (a . b) | (b . c)\n{lines}\n"), code, place, says)
+    let check = |lines: &str, code, marked, says| {
+        check(&format!("Liveness:\nr = (a . b) | (b . c)\n{lines}\n"), code, marked, says)
     };
     check("Transitions:\nb -> a : [false]", "E0250", "b -> a : [false]", "names no transition");
     check("Transitions:\na -> bb : [x_timeout]", "E0250", "a -> bb : [x_timeout]", "did you mean `b`?");

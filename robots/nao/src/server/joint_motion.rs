@@ -80,7 +80,7 @@ impl JointMotion {
             _ if difference < 0.0 => Some(Side::Left),
             _ => Some(Side::Right),
         };
-        let velocity = displacement(before, now).map(|way| way / CYCLE_SECONDS);
+        let velocity = displacement(before, now).map(|moved| moved / CYCLE_SECONDS);
         let is_still = velocity.iter().all(|part| part.abs() < MIN_SPEED);
         let [walk_x, walk_y, walk_turn] = if is_still || observed.is_some() { [0.0; 3] } else { velocity };
         Actuators {

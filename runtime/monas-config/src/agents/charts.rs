@@ -174,19 +174,19 @@ impl AgentReader<'_> {
             let values = Values::of(given, self.grammar);
             let (Some(name), text) = (values.text("name"), given.text()) else { continue };
             let known = chart.constants.iter().map(|constant| constant.name.as_str());
-            let Some(place) = known.clone().position(|known| known == name) else {
+            let Some(index) = known.clone().position(|known| known == name) else {
                 let message = format!("the chart `{}` has no constant `{name}`", chart.name);
                 let diagnostic = given.error("E0344", given.name_span(), message);
                 self.diagnostics.push(diagnostic.with_nearest(name, known));
                 continue;
             };
             match aseme::srm::constant_value(text) {
-                Some(value) if same_kind(&value, &chart.constants[place].value) => {
-                    chart.constants[place].value = value;
+                Some(value) if same_kind(&value, &chart.constants[index].value) => {
+                    chart.constants[index].value = value;
                 }
                 _ => {
                     let message = format!("`{text}` is not a value for the constant `{name}`");
-                    let hint = format!("the model gives it {}", kind(&chart.constants[place].value));
+                    let hint = format!("the model gives it {}", kind(&chart.constants[index].value));
                     self.diagnostics.push(given.error("E0344", given.text_span(), message).with_hint(hint));
                 }
             }

@@ -72,14 +72,14 @@ impl AgentReader<'_> {
 
     /// Reports names in properties that are unknown to the chart added last.
     fn judge(&mut self, rules: &PropertySet, agent: &Agent) {
-        let Some(place) = agent.charts().len().checked_sub(1) else { return };
+        let Some(index) = agent.charts().len().checked_sub(1) else { return };
         // Errors of the type environment or the chart are reported elsewhere.
         let Ok(binder) = Binder::new(&self.registry) else { return };
-        let checked = match &agent.compiled[place] {
+        let checked = match &agent.compiled[index] {
             Some(model) => binder.monitors(None, std::slice::from_ref(rules), &model.chart),
             None => {
-                let generated = agent.generated.get(&place);
-                let Ok(compiled) = binder.compiled(&agent.charts()[place], generated) else { return };
+                let generated = agent.generated.get(&index);
+                let Ok(compiled) = binder.compiled(&agent.charts()[index], generated) else { return };
                 binder.monitors(None, std::slice::from_ref(rules), &compiled)
             }
         };

@@ -96,7 +96,8 @@ impl Comparison<'_> {
                 > TOLERANCE
             {
                 let (name, model) = (&expected.name, &self.model.model);
-                let message = format!("`{name}` is at {}, in `{model}` at {}", place(here), place(expected));
+                let message =
+                    format!("`{name}` is at {}, in `{model}` at {}", origin(here), origin(expected));
                 self.report(span, message);
             } else if !moves_alike(here, expected) {
                 let message = format!("`{}` moves otherwise than in `{}`", expected.name, self.model.model);
@@ -141,7 +142,7 @@ fn apart(one: [f64; 3], other: [f64; 3]) -> f64 {
     one.iter().zip(other).map(|(one, other)| (one - other).abs()).fold(0.0, f64::max)
 }
 
-fn place(link: &Link) -> String {
+fn origin(link: &Link) -> String {
     let ([x, y, z], [roll, pitch, yaw]) = (link.offset, link.rotation);
     format!("xyz {x} {y} {z}, rpy {roll} {pitch} {yaw}")
 }
@@ -150,8 +151,8 @@ fn moves_alike(one: &Link, other: &Link) -> bool {
     match (one.motion, other.motion) {
         (None, None) => true,
         (Some(one), Some(other)) => {
-            let way = |motion: LinkMotion| motion.axis.map(|part| part * motion.factor);
-            let difference = apart(way(one), way(other)).max((one.offset - other.offset).abs());
+            let axis = |motion: LinkMotion| motion.axis.map(|part| part * motion.factor);
+            let difference = apart(axis(one), axis(other)).max((one.offset - other.offset).abs());
             (one.joint, one.is_shift) == (other.joint, other.is_shift) && difference < TOLERANCE
         }
         _ => false,

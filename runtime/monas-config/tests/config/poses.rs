@@ -111,7 +111,7 @@ fn a_joint_that_cannot_follow_is_a_warning() {
         diagnostics.iter().map(ToString::to_string).collect::<Vec<_>>(),
         [
             "a.xml:3:31: warning[E0371]: `LKneePitch` turns by 0.96 rad in 0.1 s, its motor by 6.40 rad/s at most \
-          (it lags behind; the way takes it 0.15 s)"
+          (it lags behind: it needs 0.15 s)"
         ]
     );
     let slower = text.replace("0.1 LKneePitch=0.96", "0.15 LKneePitch=0.96");

@@ -131,12 +131,12 @@ impl ChartSettings {
     /// As [`of_activity`](ChartSettings::of_activity), mutable; creates empty settings if none
     /// exist.
     pub fn of_activity_mut(&mut self, name: &str) -> &mut ActivityProfile {
-        let place = self.activities.iter().position(|known| known.name == name).unwrap_or_else(|| {
+        let index = self.activities.iter().position(|known| known.name == name).unwrap_or_else(|| {
             let (name, parameters) = (name.to_owned(), Parameters::new());
             self.activities.push(ActivityProfile { name, parameters, policy: None });
             self.activities.len() - 1
         });
-        &mut self.activities[place]
+        &mut self.activities[index]
     }
 
     /// The parameters of the activity of that name.

@@ -93,11 +93,11 @@ impl AgentProfile {
             property_sets: agent.property_sets.clone(),
             activities: agent.activities.iter().map(ActivityProfile::of).collect(),
             charts: charts
-                .map(|(place, ((model, statechart), own))| ChartProfile {
+                .map(|(index, ((model, statechart), own))| ChartProfile {
                     model: model.clone(),
                     statechart: statechart.clone(),
-                    compiled: agent.compiled[place].clone(),
-                    is_generated: agent.generated.contains_key(&place),
+                    compiled: agent.compiled[index].clone(),
+                    is_generated: agent.generated.contains_key(&index),
                     own: own.clone(),
                 })
                 .collect(),

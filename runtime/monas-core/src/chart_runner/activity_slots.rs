@@ -163,13 +163,13 @@ impl ActivitySlots {
             let node = Some(slot.node).filter(|node| *node != NO_NODE);
             let target = node.and_then(&counterpart).and_then(|node| self.index_of(node));
             slot.migrate(&known);
-            let place = match target.map(|place| (place, &mut self.slots[place])) {
-                Some((place, successor)) if successor.name == slot.name => {
+            let position = match target.map(|index| (index, &mut self.slots[index])) {
+                Some((index, successor)) if successor.name == slot.name => {
                     slot.node = successor.node;
                     slot.duration = successor.duration;
                     slot.state_priority = successor.state_priority;
                     *successor = slot;
-                    place
+                    index
                 }
                 other => {
                     if let Some((_, successor)) = other {
@@ -183,7 +183,7 @@ impl ActivitySlots {
                     self.slots.len() - 1
                 }
             };
-            running[index] = is_running.then_some(place);
+            running[index] = is_running.then_some(position);
         }
         self.running = old.running.into_iter().filter_map(|index| running[index]).collect();
     }

@@ -214,11 +214,11 @@ impl Host for ChartHost {
             Notice::GuardFailed { transition, error } => {
                 tracing::warn!(%robot, %agent, transition = %name(transition), "guard without a value: {error}");
             }
-            Notice::ActionFailed { place, index, error } => {
-                tracing::error!(%robot, %agent, ?place, action = index + 1, "action failed: {error}");
+            Notice::ActionFailed { location, index, error } => {
+                tracing::error!(%robot, %agent, ?location, action = index + 1, "action failed: {error}");
             }
             Notice::StartWaits { start } => {
-                tracing::debug!(%robot, %agent, start = %chart.names().name(start), "no way out of this START is open");
+                tracing::debug!(%robot, %agent, start = %chart.names().name(start), "no outgoing transition of this START is enabled");
             }
             _ => {}
         }

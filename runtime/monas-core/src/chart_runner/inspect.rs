@@ -108,7 +108,7 @@ impl ChartRunner {
     }
 
     /// Index of the chart among the charts of the agent.
-    pub fn place(&self) -> u32 {
+    pub fn chart_index(&self) -> u32 {
         self.host.number
     }
 

@@ -80,7 +80,7 @@ impl RegionBlackboards {
             delivery_log: DeliveryLog::default(),
             was_swapped: false,
         };
-        (0..lending.regions.len()).for_each(|place| lending.create_blackboard(place));
+        (0..lending.regions.len()).for_each(|index| lending.create_blackboard(index));
         Ok(lending)
     }
 
@@ -144,8 +144,8 @@ impl RegionBlackboards {
     }
 
     /// Gives a region a new blackboard.
-    fn create_blackboard(&mut self, place: usize) {
-        let region = &mut self.regions[place];
+    fn create_blackboard(&mut self, index: usize) {
+        let region = &mut self.regions[index];
         let mut blackboard = self.hub.blackboard(&self.agent).of_part(self.part);
         let seed = match region.created {
             0 => component_seed(self.seed, &region.path),
@@ -165,33 +165,33 @@ impl RegionBlackboards {
 
     /// A region's blackboard for changes. A loan to an activity is void from now on.
     pub(crate) fn reclaim_mut(&mut self, region: ScopeId, now: Timestamp) -> Option<&mut Blackboard> {
-        let place = region.0 as usize;
-        if self.regions.get(place)?.resident.is_none() {
-            self.replace(place, now);
+        let index = region.0 as usize;
+        if self.regions.get(index)?.resident.is_none() {
+            self.replace(index, now);
         }
-        self.regions[place].resident.as_deref_mut()
+        self.regions[index].resident.as_deref_mut()
     }
 
     /// Replaces a blackboard on loan. The new one starts with the states and histories published by
     /// now.
-    fn replace(&mut self, place: usize, now: Timestamp) {
-        if let Some(loan) = self.regions[place].loan.take() {
+    fn replace(&mut self, index: usize, now: Timestamp) {
+        if let Some(loan) = self.regions[index].loan.take() {
             loan.cancellation.request();
         }
-        self.regions[place].shown.fill(None);
+        self.regions[index].shown.fill(None);
         // It does not receive signals from before its creation, so its creation counts as a fetch.
         self.delivery_log.begin();
-        self.create_blackboard(place);
-        self.regions[place]
+        self.create_blackboard(index);
+        self.regions[index]
             .resident
             .iter()
             .for_each(|blackboard| self.delivery_log.end(blackboard.position()));
-        self.fetch(place, now);
+        self.fetch(index, now);
     }
 
     /// Delivers what has arrived to a resident blackboard.
-    fn fetch(&mut self, place: usize, now: Timestamp) {
-        if let Some(blackboard) = &mut self.regions[place].resident {
+    fn fetch(&mut self, index: usize, now: Timestamp) {
+        if let Some(blackboard) = &mut self.regions[index].resident {
             self.delivery_log.begin();
             blackboard.process_messages(now);
             self.delivery_log.end(blackboard.position());
@@ -202,8 +202,8 @@ impl RegionBlackboards {
     pub(crate) fn inherit(&mut self, region: ScopeId, from: ScopeId, now: Timestamp) {
         self.reclaim_mut(region, now);
         self.reclaim_mut(from, now);
-        let places = [region.0 as usize, from.0 as usize];
-        let Ok([inner, outer]) = self.regions.get_disjoint_mut(places) else { return };
+        let indices = [region.0 as usize, from.0 as usize];
+        let Ok([inner, outer]) = self.regions.get_disjoint_mut(indices) else { return };
         inner.subscriptions.adopt(&outer.subscriptions);
         if let (Some(inner), Some(outer)) = (&mut inner.resident, &outer.resident) {
             inner.adopt(outer);
@@ -213,10 +213,10 @@ impl RegionBlackboards {
     /// Delivers what has arrived to a region's blackboard and returns it.
     pub(crate) fn deliver(&mut self, region: ScopeId, now: Timestamp) -> Option<&Blackboard> {
         self.reclaim_mut(region, now)?;
-        let place = region.0 as usize;
-        self.regions[place].subscriptions.deliver(&self.hub, &mut self.delivery_log);
-        self.fetch(place, now);
-        self.regions[place].resident.as_deref()
+        let index = region.0 as usize;
+        self.regions[index].subscriptions.deliver(&self.hub, &mut self.delivery_log);
+        self.fetch(index, now);
+        self.regions[index].resident.as_deref()
     }
 
     /// Delivers what has arrived to a region's blackboard, for an activity that is called again.

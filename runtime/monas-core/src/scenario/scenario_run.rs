@@ -220,8 +220,8 @@ impl<'a> ScenarioRun<'a> {
             Effect::Publish { topic } => (*topic, None),
             _ => return Err(String::from("this is not a message")),
         };
-        let place = match drafts.iter().position(|(of, _)| *of == topic) {
-            Some(place) => place,
+        let index = match drafts.iter().position(|(of, _)| *of == topic) {
+            Some(position) => position,
             None => {
                 drafts.push((topic, self.initial_message(topic)?));
                 drafts.len() - 1
@@ -234,7 +234,7 @@ impl<'a> ScenarioRun<'a> {
         if matches!(value, yase::Value::Missing) {
             return Err(String::from("the value depends on a message that has not arrived"));
         }
-        set_message_field(&mut *drafts[place].1, field, value).map_err(|error| error.to_string())
+        set_message_field(&mut *drafts[index].1, field, value).map_err(|error| error.to_string())
     }
 
     /// A copy of the newest message of a topic; for a signal, which is already consumed, an empty

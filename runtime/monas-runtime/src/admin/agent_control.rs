@@ -12,10 +12,10 @@ pub(crate) trait AgentControl {
     fn status(&self, agent: &str) -> AgentStatus;
 
     /// The status of a chart of an agent, by its index.
-    fn chart_status(&self, agent: &str, place: usize) -> AgentStatus;
+    fn chart_status(&self, agent: &str, index: usize) -> AgentStatus;
 
     /// The state of a chart of an agent: the documents of `ChartRunner::inspect`.
-    fn inspect_chart(&self, agent: &str, place: usize, aspect: ChartAspect) -> Result<Vec<String>, String>;
+    fn inspect_chart(&self, agent: &str, index: usize, aspect: ChartAspect) -> Result<Vec<String>, String>;
 
     /// Whether it has a list, which may be empty.
     fn has_list(&self, agent: &str) -> bool;

@@ -113,8 +113,8 @@ impl From<PlanStep> for ChangePlan {
 }
 
 /// The name of a chart in messages.
-fn named(profile: &AgentProfile, place: usize) -> String {
-    let model = profile.charts.get(place).map_or("", |chart| chart.model.as_str());
+fn named(profile: &AgentProfile, index: usize) -> String {
+    let model = profile.charts.get(index).map_or("", |chart| chart.model.as_str());
     format!("statechart `{model}` of `{}`", profile.name)
 }
 
@@ -178,35 +178,38 @@ impl PlanContext<'_> {
             return Err(refusal("E0352", format!("`{}` has not stopped", profile.name)));
         }
         let names = self.names();
-        let charts =
-            self.host.factory.rebuild_charts(&profile, &self.place(&profile, &names), &self.host.registry);
+        let charts = self.host.factory.rebuild_charts(
+            &profile,
+            &self.chart_site(&profile, &names),
+            &self.host.registry,
+        );
         let charts = charts.map_err(|error| build_refusal("E0354", &error))?;
         Ok(update_plan(profile, AgentUpdate { charts, ..AgentUpdate::of([AgentCommand::Start]) }))
     }
 
     /// Stops one chart of an agent; its list and its other charts continue.
     fn stop_chart(&self) -> Result<ChangePlan, ChangeRefusal> {
-        let (profile, place, standing) = self.chart()?;
+        let (profile, index, standing) = self.chart()?;
         if standing == AgentStatus::Stopped {
-            return Err(refusal("E0352", format!("{} has stopped already", named(&profile, place))));
+            return Err(refusal("E0352", format!("{} has stopped already", named(&profile, index))));
         }
-        Ok(update_plan(profile, AgentUpdate { only: Some(place), ..AgentUpdate::of([AgentCommand::Stop]) }))
+        Ok(update_plan(profile, AgentUpdate { only: Some(index), ..AgentUpdate::of([AgentCommand::Stop]) }))
     }
 
     /// Starts an idle chart of an agent from the beginning.
     fn start_chart(&self) -> Result<ChangePlan, ChangeRefusal> {
-        let (profile, place, standing) = self.chart()?;
+        let (profile, index, standing) = self.chart()?;
         if standing != AgentStatus::Stopped {
-            return Err(refusal("E0352", format!("{} has not stopped", named(&profile, place))));
+            return Err(refusal("E0352", format!("{} has not stopped", named(&profile, index))));
         }
         let HostAdmin { factory, registry, .. } = self.host;
         let (names, failed) = (self.names(), |error: Error| build_refusal("E0354", &error));
         let binder = Binder::new(registry).map_err(failed)?;
-        let runner = factory.rebuild_chart(&binder, &profile, place, &self.place(&profile, &names));
+        let runner = factory.rebuild_chart(&binder, &profile, index, &self.chart_site(&profile, &names));
         let charts = vec![runner.map_err(failed)?];
         Ok(update_plan(
             profile,
-            AgentUpdate { charts, only: Some(place), ..AgentUpdate::of([AgentCommand::Start]) },
+            AgentUpdate { charts, only: Some(index), ..AgentUpdate::of([AgentCommand::Start]) },
         ))
     }
 
@@ -234,8 +237,8 @@ impl PlanContext<'_> {
         let registry = &self.host.registry;
         let binder = Binder::new(registry).map_err(|error| build_refusal("E0354", &error))?;
         let mut known = Vec::new();
-        for (place, chart) in profile.charts.iter().enumerate() {
-            if only.is_some_and(|only| only != place) {
+        for (index, chart) in profile.charts.iter().enumerate() {
+            if only.is_some_and(|only| only != index) {
                 continue;
             }
             let generated = registry.chart(&chart.model).filter(|_| chart.is_generated).and_then(Result::ok);
@@ -250,20 +253,20 @@ impl PlanContext<'_> {
     /// The chart that the change names, of an agent that is not stopped, and the chart's status.
     fn chart(&self) -> Result<(AgentProfile, usize, AgentStatus), ChangeRefusal> {
         let profile = self.agent()?;
-        let place = settings::chart(&profile, &self.change.chart)?;
+        let index = settings::chart(&profile, &self.change.chart)?;
         if self.control.status(&profile.name) == AgentStatus::Stopped {
             let message = format!("`{}` has stopped", profile.name);
             return Err(refusal_with("E0352", message, "start it first, which restarts all its charts"));
         }
-        let standing = self.control.chart_status(&profile.name, place);
-        Ok((profile, place, standing))
+        let standing = self.control.chart_status(&profile.name, index);
+        Ok((profile, index, standing))
     }
 
     fn names(&self) -> Vec<String> {
         self.host.profiles.iter().map(|profile| profile.name.clone()).collect()
     }
 
-    fn place<'a>(&'a self, profile: &'a AgentProfile, names: &'a [String]) -> ChartSite<'a> {
+    fn chart_site<'a>(&'a self, profile: &'a AgentProfile, names: &'a [String]) -> ChartSite<'a> {
         let AgentProfile { name, elsewhere, .. } = profile;
         ChartSite { context: &self.host.context, names, agent: name, elsewhere, now: self.now }
     }
@@ -306,8 +309,8 @@ impl PlanContext<'_> {
         let profile = self.agent()?;
         let listed = self.listed(&self.change.activity)?;
         let count = profile.activities.len();
-        let place = self.position(count + 1, count)?;
-        let (profile, orders) = self.with_new_activity(profile, place, vec![listed])?;
+        let index = self.position(count + 1, count)?;
+        let (profile, orders) = self.with_new_activity(profile, index, vec![listed])?;
         Ok(update_plan(profile, orders))
     }
 
@@ -316,13 +319,13 @@ impl PlanContext<'_> {
     pub(crate) fn with_new_activity(
         &self,
         mut profile: AgentProfile,
-        place: usize,
+        index: usize,
         more: Vec<ListedActivity>,
     ) -> Result<(AgentProfile, AgentUpdate), ChangeRefusal> {
         let added = more.iter().map(ActivityProfile::of);
-        profile.activities.splice(place..place, added.collect::<Vec<_>>());
+        profile.activities.splice(index..index, added.collect::<Vec<_>>());
         if self.control.has_list(&profile.name) {
-            let edits = (place..).zip(more).map(|(place, listed)| ListEdit::Insert(place, listed));
+            let edits = (index..).zip(more).map(|(position, listed)| ListEdit::Insert(position, listed));
             let edits = edits.collect();
             return Ok((profile, AgentUpdate { edits, ..AgentUpdate::default() }));
         }
@@ -338,9 +341,9 @@ impl PlanContext<'_> {
 
     fn remove_activity(&self) -> Result<ChangePlan, ChangeRefusal> {
         let mut profile = self.agent()?;
-        let place = self.activity(&profile)?;
-        profile.activities.remove(place);
-        Ok(self.edited(profile, ListEdit::Remove(place)))
+        let index = self.activity(&profile)?;
+        profile.activities.remove(index);
+        Ok(self.edited(profile, ListEdit::Remove(index)))
     }
 
     fn move_activity(&self) -> Result<ChangePlan, ChangeRefusal> {
@@ -355,10 +358,10 @@ impl PlanContext<'_> {
 
     fn replace_activity(&self) -> Result<ChangePlan, ChangeRefusal> {
         let mut profile = self.agent()?;
-        let place = self.activity(&profile)?;
+        let index = self.activity(&profile)?;
         let listed = self.listed(&self.change.replacement)?;
-        profile.activities[place] = ActivityProfile::of(&listed);
-        Ok(self.edited(profile, ListEdit::Replace(place, listed)))
+        profile.activities[index] = ActivityProfile::of(&listed);
+        Ok(self.edited(profile, ListEdit::Replace(index, listed)))
     }
 
     fn edited(&self, profile: AgentProfile, edit: ListEdit) -> ChangePlan {
@@ -375,7 +378,7 @@ impl PlanContext<'_> {
         match self.change.place as usize {
             0 => Ok(otherwise),
             place if place <= count => Ok(place - 1),
-            place => Err(refusal("E0353", format!("there is no place {place}: places are 1 to {count}"))),
+            index => Err(refusal("E0353", format!("there is no place {index}: places are 1 to {count}"))),
         }
     }
 
@@ -400,7 +403,7 @@ impl PlanContext<'_> {
             let message = format!("`{}` has stopped", profile.name);
             return Err(refusal_with("E0352", message, "start it first: a model is swapped while it runs"));
         }
-        let place = settings::chart(&profile, &self.change.chart)?;
+        let index = settings::chart(&profile, &self.change.chart)?;
         let Change { file, text, states, accept_losses, .. } = self.change;
         let factory = &self.host.factory;
         let failed = |error: Error| build_refusal("E0355", &error);
@@ -418,14 +421,14 @@ impl PlanContext<'_> {
         };
         let statechart = bound.chart.statechart().clone();
         let names = self.names();
-        let own = profile.charts[place].own.clone();
-        let bound = factory.fitting(bound, &own, &self.place(&profile, &names)).map_err(failed)?;
+        let own = profile.charts[index].own.clone();
+        let bound = factory.fitting(bound, &own, &self.chart_site(&profile, &names)).map_err(failed)?;
         let (model, is_generated) = (file.clone(), text.is_empty());
         let compiled = (!is_generated).then(|| binder.model(&bound));
-        profile.charts[place] = ChartProfile { model, statechart, compiled, is_generated, own };
+        profile.charts[index] = ChartProfile { model, statechart, compiled, is_generated, own };
         let states = states.iter().map(|state| (state.key.clone(), state.value.clone())).collect();
         let of_agent = Some((&profile.property_sets[..], profile.name.as_str(), profile.charts.len()));
-        let monitors = binder.monitors(of_agent, &profile.charts[place].own.property_sets, &bound.chart)?;
+        let monitors = binder.monitors(of_agent, &profile.charts[index].own.property_sets, &bound.chart)?;
         let swap = Box::new(ModelSwap {
             bound,
             states,
@@ -435,7 +438,7 @@ impl PlanContext<'_> {
         });
         Ok(ChangePlan {
             warnings,
-            ..update_plan(profile, AgentUpdate { swap: Some((place, swap)), ..AgentUpdate::default() })
+            ..update_plan(profile, AgentUpdate { swap: Some((index, swap)), ..AgentUpdate::default() })
         })
     }
 }

@@ -239,8 +239,8 @@ impl HostAdmin {
             PlanStep::Launch(agents) => {
                 for (profile, member) in agents {
                     control.launch(member, asked.as_ref()).map_err(|reason| refusal("E0357", reason))?;
-                    let place = self.profiles.partition_point(|known| known.name < profile.name);
-                    self.profiles.insert(place, profile);
+                    let index = self.profiles.partition_point(|known| known.name < profile.name);
+                    self.profiles.insert(index, profile);
                 }
             }
             PlanStep::UpdateModules(equipment) => {
@@ -316,15 +316,15 @@ impl HostAdmin {
             });
             reasons.collect::<Vec<_>>().join("; ")
         };
-        let place = settings::chart(profile, chart).map_err(said)?;
+        let index = settings::chart(profile, chart).map_err(said)?;
         let aspect = if *values { ChartAspect::Values } else { ChartAspect::State };
-        let mut documents = control.inspect_chart(agent, place, aspect)?.into_iter();
+        let mut documents = control.inspect_chart(agent, index, aspect)?.into_iter();
         let mut document = || documents.next().unwrap_or_default();
         let mut state = ChartState {
             host: self.hub().host().into(),
             agent: agent.clone(),
-            model: profile.charts[place].model.clone(),
-            state: control.chart_status(agent, place).word().into(),
+            model: profile.charts[index].model.clone(),
+            state: control.chart_status(agent, index).word().into(),
             ..ChartState::default()
         };
         match aspect {

@@ -34,14 +34,14 @@ impl PlanContext<'_> {
         let module = file.load()?;
         let registry = self.with_module(&module)?;
         let updates = meant.map(|profile| {
-            let place = profile.activities.len();
+            let index = profile.activities.len();
             let listed = module.activity_names().map(|name| {
                 listed(
                     &registry,
                     &ActivityProfile { name: name.into(), parameters: Parameters::new(), policy: None },
                 )
             });
-            self.with_new_activity(profile, place, listed.collect::<Result<_, _>>()?)
+            self.with_new_activity(profile, index, listed.collect::<Result<_, _>>()?)
         });
         let updates = updates.transpose()?.into_iter().collect();
         Ok(PlanStep::UpdateModules(Box::new(ModuleUpdate { registry, updates })).into())
@@ -64,15 +64,15 @@ impl PlanContext<'_> {
                 let hint = "change the agent's model or remove it first";
                 return Err(refusal_with("E0365", message, hint));
             }
-            let places = places(profile, module);
-            if places.is_empty() {
+            let indices = activity_indices(profile, module);
+            if indices.is_empty() {
                 continue;
             }
             let mut without = profile.clone();
             // From the last index on, so that the other indices stay valid.
-            let edits = places.into_iter().rev().map(|place| {
-                without.activities.remove(place);
-                ListEdit::Remove(place)
+            let edits = indices.into_iter().rev().map(|index| {
+                without.activities.remove(index);
+                ListEdit::Remove(index)
             });
             let edits = edits.collect();
             updates.push((without, AgentUpdate { edits, ..AgentUpdate::default() }));
@@ -137,18 +137,18 @@ fn instance_update(
     module: &Module,
     registry: &Registry,
 ) -> Result<AgentUpdate, ChangeRefusal> {
-    let edits = places(profile, module).into_iter().map(|place| {
-        Ok::<_, ChangeRefusal>(ListEdit::Replace(place, listed(registry, &profile.activities[place])?))
+    let edits = activity_indices(profile, module).into_iter().map(|index| {
+        Ok::<_, ChangeRefusal>(ListEdit::Replace(index, listed(registry, &profile.activities[index])?))
     });
     let edits = edits.collect::<Result<_, _>>()?;
     let mut instances: Vec<(usize, ActivityInstances)> = Vec::new();
-    for (place, chart) in profile.charts.iter().enumerate() {
+    for (position, chart) in profile.charts.iter().enumerate() {
         let states = states(chart, profile, module).into_iter().map(|(node, name)| {
             Ok::<_, ChangeRefusal>((node, settings::instance(registry, &name, &chart.own.parameters(&name))?))
         });
         let states = states.collect::<Result<ActivityInstances, _>>()?;
         if !states.is_empty() {
-            instances.push((place, states));
+            instances.push((position, states));
         }
     }
     Ok(AgentUpdate { edits, instances, ..AgentUpdate::default() })
@@ -162,9 +162,9 @@ fn listed(registry: &Registry, known: &ActivityProfile) -> Result<ListedActivity
 }
 
 /// The indices of a module's activities in an agent's list.
-fn places(profile: &AgentProfile, module: &Module) -> Vec<usize> {
-    let places = profile.activities.iter().enumerate();
-    places.filter(|(_, activity)| is_activity_of(module, &activity.name)).map(|(place, _)| place).collect()
+fn activity_indices(profile: &AgentProfile, module: &Module) -> Vec<usize> {
+    let indices = profile.activities.iter().enumerate();
+    indices.filter(|(_, activity)| is_activity_of(module, &activity.name)).map(|(index, _)| index).collect()
 }
 
 /// The states of a chart whose activities belong to a module, with the names of these. Activities
@@ -190,7 +190,7 @@ fn is_activity_of(module: &Module, name: &str) -> bool {
 /// The entry of a module in a status reply.
 pub(crate) fn entry(module: &Module, admin: &HostAdmin) -> ModuleEntry {
     let uses = |profile: &&AgentProfile| {
-        !places(profile, module).is_empty()
+        !activity_indices(profile, module).is_empty()
             || profile.charts.iter().any(|chart| !states(chart, profile, module).is_empty())
     };
     ModuleEntry {

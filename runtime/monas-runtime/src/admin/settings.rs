@@ -29,39 +29,39 @@ pub(crate) fn set(
         return Err(refusal_with("E0353", "no setting is given", hint));
     }
     if !chart_name.is_empty() {
-        let place = chart(profile, chart_name)?;
-        return set_chart(profile, place, settings, registry);
+        let index = chart(profile, chart_name)?;
+        return set_chart(profile, index, settings, registry);
     }
-    if let Some(place) = chart_with(profile, settings) {
-        return set_chart(profile, place, settings, registry);
+    if let Some(position) = chart_with(profile, settings) {
+        return set_chart(profile, position, settings, registry);
     }
     let mut orders = AgentUpdate::default();
     let mut configured: Vec<usize> = Vec::new();
     for Setting { key, value } in settings {
         match key.split_once('.') {
             Some((name, parameter)) => {
-                let place = activity(profile, name)?;
-                let known = &mut profile.activities[place];
+                let index = activity(profile, name)?;
+                let known = &mut profile.activities[index];
                 if parameter == "on_failure" {
                     let policy = policy(value).ok_or_else(|| refusal("E0306", unknown_policy(key, value)))?;
                     known.policy = Some(policy);
-                    orders.edits.push(ListEdit::SetPolicy(place, policy));
+                    orders.edits.push(ListEdit::SetPolicy(index, policy));
                     continue;
                 }
                 known.parameters = known.parameters.clone().with(parameter, value);
-                configured.push(place);
+                configured.push(index);
             }
             None => orders.commands.push(attribute(profile, key, value)?),
         }
     }
     configured.sort_unstable();
     configured.dedup();
-    for place in configured {
-        let ActivityProfile { name, parameters, .. } = &profile.activities[place];
+    for index in configured {
+        let ActivityProfile { name, parameters, .. } = &profile.activities[index];
         // A separate instance validates them first, so that the running one never receives invalid
         // values.
         instance(registry, name, parameters)?;
-        orders.edits.push(ListEdit::Configure(place, parameters.clone()));
+        orders.edits.push(ListEdit::Configure(index, parameters.clone()));
     }
     Ok(orders)
 }
@@ -135,11 +135,11 @@ fn attribute(profile: &mut AgentProfile, key: &str, value: &str) -> Result<Agent
 /// Sets attributes and parameters of one chart of an agent. Applies all settings or none.
 fn set_chart(
     profile: &mut AgentProfile,
-    place: usize,
+    index: usize,
     settings: &[Setting],
     registry: &Registry,
 ) -> Result<AgentUpdate, ChangeRefusal> {
-    let chart = &profile.charts[place];
+    let chart = &profile.charts[index];
     let mut own = chart.own.clone();
     let mut configured: Vec<&str> = Vec::new();
     for Setting { key, value } in settings {
@@ -163,8 +163,8 @@ fn set_chart(
         // values.
         charts_instance(chart, registry, name, &own.parameters(name))?;
     }
-    profile.charts[place].own = own.clone();
-    Ok(AgentUpdate { chart_settings: Some((place, Box::new(own))), ..AgentUpdate::default() })
+    profile.charts[index].own = own.clone();
+    Ok(AgentUpdate { chart_settings: Some((index, Box::new(own))), ..AgentUpdate::default() })
 }
 
 fn set_own(own: &mut ChartSettings, given: SettingValue) {
@@ -216,7 +216,7 @@ fn chart_with(profile: &AgentProfile, settings: &[Setting]) -> Option<usize> {
     let is_listed =
         activity(profile, name).is_ok() || profile.activities.iter().any(|one| one.name == **name);
     let mut having =
-        (0..profile.charts.len()).filter(|place| named_in(&profile.charts[*place]).any(|one| one == *name));
+        (0..profile.charts.len()).filter(|index| named_in(&profile.charts[*index]).any(|one| one == *name));
     having.next().filter(|_| !is_listed && having.next().is_none())
 }
 
@@ -232,20 +232,20 @@ fn unknown_policy(key: &str, value: &str) -> String {
 /// Index of an activity in its list, by its name or its position from 1.
 pub(crate) fn activity(profile: &AgentProfile, name: &str) -> Result<usize, ChangeRefusal> {
     let count = profile.activities.len();
-    if let Some(place) = name.parse::<usize>().ok().filter(|place| (1..=count).contains(place)) {
-        return Ok(place - 1);
+    if let Some(index) = name.parse::<usize>().ok().filter(|position| (1..=count).contains(position)) {
+        return Ok(index - 1);
     }
-    let places: Vec<usize> = (0..count).filter(|place| profile.activities[*place].name == name).collect();
-    match places[..] {
-        [place] => Ok(place),
+    let indices: Vec<usize> = (0..count).filter(|index| profile.activities[*index].name == name).collect();
+    match indices[..] {
+        [index] => Ok(index),
         [] => {
             let message = format!("the list of `{}` has no activity `{name}`", profile.name);
             Err(unknown("E0353", message, name, profile.activities.iter().map(|known| known.name.as_str())))
         }
         _ => {
-            let places: Vec<String> = places.iter().map(|place| (place + 1).to_string()).collect();
+            let numbers: Vec<String> = indices.iter().map(|index| (index + 1).to_string()).collect();
             let message = format!("the list of `{}` has several activities `{name}`", profile.name);
-            Err(refusal_with("E0353", message, format!("name its place: {}", places.join(", "))))
+            Err(refusal_with("E0353", message, format!("name its place: {}", numbers.join(", "))))
         }
     }
 }
@@ -255,7 +255,7 @@ pub(crate) fn chart(profile: &AgentProfile, name: &str) -> Result<usize, ChangeR
     let count = profile.charts.len();
     let models = || profile.charts.iter().map(|chart| chart.model.as_str());
     let named = profile.charts.iter().position(|chart| chart.model == name);
-    let numbered = || name.parse::<usize>().ok().filter(|place| (1..=count).contains(place));
+    let numbered = || name.parse::<usize>().ok().filter(|index| (1..=count).contains(index));
     match (name, count) {
         (_, 0) => Err(refusal("E0355", format!("`{}` has no statechart", profile.name))),
         ("", 1) => Ok(0),
@@ -263,7 +263,7 @@ pub(crate) fn chart(profile: &AgentProfile, name: &str) -> Result<usize, ChangeR
             let message = format!("`{}` has several statecharts", profile.name);
             Err(unknown("E0355", message, name, models()))
         }
-        _ => named.or_else(|| numbered().map(|place| place - 1)).ok_or_else(|| {
+        _ => named.or_else(|| numbered().map(|number| number - 1)).ok_or_else(|| {
             let message = format!("`{}` has no statechart `{name}`", profile.name);
             unknown("E0355", message, name, models())
         }),

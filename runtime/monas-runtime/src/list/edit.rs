@@ -26,27 +26,27 @@ impl ActivityList {
     pub(crate) fn edit(&mut self, edit: ListEdit) {
         let count = self.entries.len();
         match edit {
-            ListEdit::Insert(place, listed) => {
+            ListEdit::Insert(index, listed) => {
                 let entry = self.entry(listed);
-                self.entries.insert(place.min(count), entry);
+                self.entries.insert(index.min(count), entry);
             }
-            ListEdit::Remove(place) if place < count => {
-                self.end(place);
-                self.entries.remove(place);
+            ListEdit::Remove(index) if index < count => {
+                self.end(index);
+                self.entries.remove(index);
             }
             ListEdit::Move(from, to) if from < count => {
                 let entry = self.entries.remove(from);
                 self.entries.insert(to.min(count - 1), entry);
             }
-            ListEdit::Replace(place, listed) if place < count => {
-                self.end(place);
-                self.entries[place] = self.entry(listed);
+            ListEdit::Replace(index, listed) if index < count => {
+                self.end(index);
+                self.entries[index] = self.entry(listed);
             }
-            ListEdit::Configure(place, parameters) if place < count => {
-                let ListEntry { name, activity, .. } = &mut self.entries[place];
+            ListEdit::Configure(index, parameters) if index < count => {
+                let ListEntry { name, activity, .. } = &mut self.entries[index];
                 call::configure_again(name, &mut **activity, &parameters);
             }
-            ListEdit::SetPolicy(place, policy) if place < count => self.entries[place].policy = Some(policy),
+            ListEdit::SetPolicy(index, policy) if index < count => self.entries[index].policy = Some(policy),
             // No such position.
             _ => {}
         }
@@ -67,8 +67,8 @@ impl ActivityList {
     }
 
     /// Stops a running activity; its outputs are published with the next cycle.
-    pub(crate) fn end(&mut self, place: usize) {
-        let entry = &mut self.entries[place];
+    pub(crate) fn end(&mut self, index: usize) {
+        let entry = &mut self.entries[index];
         if let ActivityHealth::Up = entry.health
             && let Err(failure) = calling(&entry.caller, self.cycles, || {
                 call::stop(entry.activity.as_mut(), &mut self.blackboard)

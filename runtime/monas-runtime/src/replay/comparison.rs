@@ -125,17 +125,17 @@ impl MomentComparison {
     ) -> bool {
         let partner = self.produced.iter().position(|now| !now.is_paired && Some(now.topic) == then.topic);
         let tally = &mut report.lines[then.line];
-        let Some(place) = partner else {
+        let Some(index) = partner else {
             tally.only_recorded += 1;
             on_difference(self.difference(&tally.topic, then.cycle, time, Some(&then.bytes), None));
             return false;
         };
-        self.produced[place].is_paired = true;
+        self.produced[index].is_paired = true;
         tally.compared += 1;
-        let is_equal = self.produced[place].bytes == then.bytes;
+        let is_equal = self.produced[index].bytes == then.bytes;
         if !is_equal {
             tally.different += 1;
-            let now = &self.produced[place].bytes;
+            let now = &self.produced[index].bytes;
             on_difference(self.difference(&tally.topic, then.cycle, time, Some(&then.bytes), Some(now)));
         }
         is_equal

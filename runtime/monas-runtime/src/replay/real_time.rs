@@ -116,7 +116,7 @@ impl RealTimeReplay {
                 if threads.is_empty() {
                     return Err(nothing_to_run(&profile.name));
                 }
-                for (place, agent) in threads {
+                for (index, agent) in threads {
                     let (name, links, modules) = (name.clone(), links.clone(), modules.clone());
                     let agents = vec![agent];
                     let host =
@@ -130,7 +130,7 @@ impl RealTimeReplay {
                     parts.push(ThreadReplay::new(
                         alone,
                         profile.clone(),
-                        ThreadPosition { chart: place, charts, has_list, lists },
+                        ThreadPosition { chart: index, charts, has_list, lists },
                     )?);
                 }
             }
@@ -155,9 +155,9 @@ impl RealTimeReplay {
     pub(crate) fn input(&mut self, recorded: RecordedStream<'_>) -> Result<usize, Error> {
         let hub = self.hub(recorded.received_by.unwrap_or(recorded.host));
         let mut routes = Vec::new();
-        for (place, part) in self.parts.iter().enumerate() {
+        for (index, part) in self.parts.iter().enumerate() {
             if let Some(route) = part.route(recorded, &mut self.report)? {
-                routes.push((place, route));
+                routes.push((index, route));
             }
         }
         let about = match recorded.topic {
@@ -197,8 +197,8 @@ impl RealTimeReplay {
         *count += 1;
         let position = *count;
         let mut shared: Option<Arc<[u8]>> = None;
-        for (place, route) in routes {
-            let part = &mut self.parts[*place];
+        for (index, route) in routes {
+            let part = &mut self.parts[*index];
             match *route {
                 RealTimeRoute::Own { topic, line, is_cycle } => {
                     let bytes = message.bytes.to_vec();
@@ -440,7 +440,7 @@ impl ThreadReplay {
     fn is_of_thread(&self, record: &Cycle) -> bool {
         match (self.thread.chart, record.turn()) {
             (Some(_), Turn::None) => record.seen.is_empty(),
-            (Some(place), _) => record.chart as usize == place,
+            (Some(index), _) => record.chart as usize == index,
             (None, _) => true,
         }
     }

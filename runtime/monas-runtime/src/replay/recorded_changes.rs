@@ -53,7 +53,7 @@ impl ThreadPosition {
         let PreparedAgent { list, mut charts, .. } = agent;
         let is_same = charts.len() == self.charts;
         let (list, charts) = match self.chart.filter(|_| is_same) {
-            Some(place) => (None, vec![charts.swap_remove(place)]),
+            Some(index) => (None, vec![charts.swap_remove(index)]),
             None => (list, Vec::new()),
         };
         is_same.then_some(PreparedAgent { list, charts, ..agent })
@@ -113,7 +113,7 @@ impl RecordedChanges {
 
     /// The change of a reply, if the agent has not applied it.
     pub(crate) fn change_of(&self, changed: &Changed) -> Option<Change> {
-        self.request_of(changed).map(|place| self.requests[place].change.clone())
+        self.request_of(changed).map(|index| self.requests[index].change.clone())
     }
 
     /// Prepares the thread of a removed agent that a change adds again.
@@ -157,7 +157,7 @@ impl RecordedChanges {
             self.note(changed, repeated, at);
             self.thread.has_list |= begins_list;
             let refused = self.request_of(changed).filter(|_| waits && !changed.done);
-            refused.and_then(|place| self.requests.remove(place));
+            refused.and_then(|index| self.requests.remove(index));
             return Ok(());
         }
         let is_list = matches!(repeated, ReplayedThread::List(_));
@@ -173,15 +173,15 @@ impl RecordedChanges {
 
     /// Updates the profile after a change that concerned only other threads of the agent.
     fn note(&mut self, changed: &Changed, repeated: &mut ReplayedThread, at: Timestamp) {
-        let place = self.request_of(changed).filter(|_| changed.done);
+        let index = self.request_of(changed).filter(|_| changed.done);
         // Removal and addition of agents are processed elsewhere.
         let comes_or_goes = matches!(changed.action(), Action::AddAgents | Action::RemoveAgent);
-        let Some(place) = place.filter(|_| !comes_or_goes) else { return };
-        let RecordedRequest { change, .. } = &self.requests[place];
+        let Some(index) = index.filter(|_| !comes_or_goes) else { return };
+        let RecordedRequest { change, .. } = &self.requests[index];
         let mut replayer =
             ChangeReplayer { is_unaffected: true, ..ChangeReplayer::of(change, self.thread, repeated, at) };
         if self.admin.replay_change(change, &mut replayer, at).done {
-            self.requests.remove(place);
+            self.requests.remove(index);
         }
     }
 
@@ -245,7 +245,7 @@ impl RecordedChanges {
         repeated: &mut ReplayedThread,
         now: Timestamp,
     ) -> Result<(), Error> {
-        let request = self.request_of(changed).and_then(|place| self.requests.remove(place));
+        let request = self.request_of(changed).and_then(|index| self.requests.remove(index));
         let Some(RecordedRequest { change, .. }) = request.filter(|_| changed.done) else { return Ok(()) };
         let mut replayer = ChangeReplayer::of(&change, self.thread, repeated, now);
         let again = self.admin.replay_change(&change, &mut replayer, now);
@@ -259,8 +259,8 @@ impl RecordedChanges {
         let sequence = asked.sequence as u32;
         let is_it =
             |request: &RecordedRequest| request.publisher == asked.publisher && request.sequence == sequence;
-        let place = self.requests.iter().position(is_it)?;
-        self.requests.drain(..=place).next_back().map(|request| request.change)
+        let index = self.requests.iter().position(is_it)?;
+        self.requests.drain(..=index).next_back().map(|request| request.change)
     }
 }
 
@@ -327,7 +327,7 @@ impl AgentControl for ChangeReplayer<'_> {
     }
 
     fn apply(&mut self, _: &str, mut orders: AgentUpdate) -> Result<Vec<String>, Vec<String>> {
-        let ThreadPosition { chart: place, charts, has_list, .. } = self.thread;
+        let ThreadPosition { chart: index, charts, has_list, .. } = self.thread;
         if let (ReplayedThread::Waiting(_), Some(list)) = (&self.repeated, orders.list.take()) {
             if self.is_unaffected {
                 return Err(vec!["the thread follows later".into()]);
@@ -335,7 +335,7 @@ impl AgentControl for ChangeReplayer<'_> {
             self.was_applied = true;
             return self.repeated.begin(*list).map(|()| Vec::new()).map_err(|error| vec![error.to_string()]);
         }
-        let own = orders.shares(has_list, charts).into_iter().find(|share| share.chart == place);
+        let own = orders.shares(has_list, charts).into_iter().find(|share| share.chart == index);
         match own {
             Some(_) if self.is_unaffected => Err(vec!["the thread follows later".into()]),
             Some(share) => {

@@ -185,8 +185,8 @@ impl ReplayGuide for RecordedInputs {
     fn publishing(&mut self) {
         let mut state = self.state();
         let published = state.own_outputs.heard().produced.len();
-        if let Some(place) = state.own.get(published).copied() {
-            state.deliver_until(place.saturating_sub(1));
+        if let Some(index) = state.own.get(published).copied() {
+            state.deliver_until(index.saturating_sub(1));
         }
     }
 }

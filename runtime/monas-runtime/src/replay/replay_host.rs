@@ -115,10 +115,10 @@ impl ReplayHost {
             .collect();
         let turn_order: Vec<String> = names.into_iter().collect();
         let replayed = |member: super::super::agent_factory::PreparedAgent| {
-            let place = turn_order.binary_search(&member.name).unwrap_or_default();
+            let index = turn_order.binary_search(&member.name).unwrap_or_default();
             let window = MomentComparison::new(hub.host(), &member.name);
             ReplayedAgent {
-                turn: place,
+                turn: index,
                 instance: AgentInstance::new(member, Timestamp::ZERO),
                 comparison: window,
             }
@@ -146,7 +146,7 @@ impl ReplayHost {
     }
 
     /// Index of an agent in the order of turns, replayed or not.
-    pub(crate) fn place(&self, name: &str) -> Option<usize> {
+    pub(crate) fn turn_index(&self, name: &str) -> Option<usize> {
         self.turn_order.binary_search_by(|other| other.as_str().cmp(name)).ok()
     }
 
@@ -273,10 +273,10 @@ impl ReplayHost {
     }
 
     /// Begins the turn of an agent that is not replayed, or of no agent.
-    pub(crate) fn turn_of_another(&mut self, place: Option<usize>, sets_up: bool, output: &OutputCapture) {
+    pub(crate) fn turn_of_another(&mut self, index: Option<usize>, sets_up: bool, output: &OutputCapture) {
         self.is_setting_up &= sets_up;
-        if let Some(place) = place.filter(|_| !self.is_setting_up) {
-            self.run_before(place, output);
+        if let Some(index) = index.filter(|_| !self.is_setting_up) {
+            self.run_before(index, output);
         }
     }
 
@@ -296,13 +296,13 @@ impl ReplayHost {
             return;
         }
         self.is_setting_up = false;
-        let place = self.agents[agent].turn;
-        if self.turn == Some(place) {
+        let index = self.agents[agent].turn;
+        if self.turn == Some(index) {
             // It has had its turn, and gets another one after all others.
-            self.run_due(Some(place), None, output);
+            self.run_due(Some(index), None, output);
             self.turn = None;
         }
-        self.run_before(place, output);
+        self.run_before(index, output);
         self.deliver_publications();
         if self.agents[agent].instance.due(self.now) <= self.now {
             self.run(agent, output);
@@ -310,25 +310,25 @@ impl ReplayHost {
     }
 
     /// Executes the turns of the agents before a place.
-    fn run_before(&mut self, place: usize, output: &OutputCapture) {
-        if self.turn == Some(place) {
+    fn run_before(&mut self, index: usize, output: &OutputCapture) {
+        if self.turn == Some(index) {
             return;
         }
-        if self.turn.is_some_and(|turn| turn > place) {
+        if self.turn.is_some_and(|turn| turn > index) {
             self.run_due(self.turn, None, output);
             self.turn = None;
         }
-        self.run_due(self.turn, Some(place), output);
-        self.turn = Some(place);
+        self.run_due(self.turn, Some(index), output);
+        self.turn = Some(index);
     }
 
     /// Executes the turns of the agents between two positions that have something to do.
     fn run_due(&mut self, after: Option<usize>, before: Option<usize>, output: &OutputCapture) {
         self.deliver_publications();
         for agent in 0..self.agents.len() {
-            let ReplayedAgent { turn: place, instance, .. } = &self.agents[agent];
+            let ReplayedAgent { turn: index, instance, .. } = &self.agents[agent];
             let is_between =
-                after.is_none_or(|after| *place > after) && before.is_none_or(|before| *place < before);
+                after.is_none_or(|after| *index > after) && before.is_none_or(|before| *index < before);
             if is_between && instance.due(self.now) <= self.now {
                 self.run(agent, output);
             }

@@ -49,13 +49,13 @@ impl AgentControl for ReplayedAgents<'_> {
         self.instance(agent).map_or(AgentStatus::Stopped, AgentInstance::status)
     }
 
-    fn chart_status(&self, agent: &str, place: usize) -> AgentStatus {
+    fn chart_status(&self, agent: &str, index: usize) -> AgentStatus {
         let shown = self.instance(agent).map(AgentInstance::chart_statuses).unwrap_or_default();
-        shown.get(place).map_or(AgentStatus::Stopped, |chart| chart.status)
+        shown.get(index).map_or(AgentStatus::Stopped, |chart| chart.status)
     }
 
-    fn inspect_chart(&self, agent: &str, place: usize, aspect: ChartAspect) -> Result<Vec<String>, String> {
-        let on_difference = self.instance(agent).and_then(|instance| instance.inspect_chart(place, aspect));
+    fn inspect_chart(&self, agent: &str, index: usize, aspect: ChartAspect) -> Result<Vec<String>, String> {
+        let on_difference = self.instance(agent).and_then(|instance| instance.inspect_chart(index, aspect));
         on_difference.ok_or_else(|| format!("`{agent}` has no such statechart"))
     }
 

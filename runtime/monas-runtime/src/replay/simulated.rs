@@ -37,7 +37,7 @@ enum SimulatedRoute {
     Published {
         host: usize,
         publisher: AnyPublisher,
-        place: Option<usize>,
+        turn: Option<usize>,
         sets_up: bool,
         asks: bool,
         answers: bool,
@@ -107,11 +107,11 @@ impl SimulatedReplay {
         let answers = topic == CHANGED.path() && publisher == HOST_ITSELF;
         // An external request was applied immediately, before any turn.
         let asks = topic == CHANGE.path() && publisher == OUTSIDE;
-        let place = self.hosts[index].place(publisher);
+        let turn = self.hosts[index].turn_index(publisher);
         let publisher = hub.publisher_by_name(topic, publisher).map_err(Error::hub)?.of_part(part);
         // A log line may stand anywhere.
         let sets_up = [HOST.path(), MODEL.path(), CHART.path(), LOG.path()].contains(&topic);
-        Ok(SimulatedRoute::Published { host: index, publisher, place, sets_up, asks, answers })
+        Ok(SimulatedRoute::Published { host: index, publisher, turn, sets_up, asks, answers })
     }
 
     pub(crate) fn feed(
@@ -131,10 +131,10 @@ impl SimulatedReplay {
                 host.advance_to(message.received, capture, report, on_difference);
                 host.expect(*agent, *topic, *path, message.bytes, capture);
             }
-            SimulatedRoute::Published { host, publisher, place, sets_up, asks, answers } => {
+            SimulatedRoute::Published { host, publisher, turn, sets_up, asks, answers } => {
                 let host = &mut hosts[*host];
                 host.advance_to(message.received, capture, report, on_difference);
-                host.turn_of_another(*place, *sets_up, capture);
+                host.turn_of_another(*turn, *sets_up, capture);
                 if *answers {
                     host.apply_requests(capture);
                     host.answered(&Changed::decode(message.bytes).map_err(unread)?);

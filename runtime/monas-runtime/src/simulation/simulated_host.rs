@@ -231,13 +231,13 @@ impl AgentControl for SimulatedAgents<'_> {
         self.team.instance(agent).map_or(AgentStatus::Stopped, AgentInstance::status)
     }
 
-    fn chart_status(&self, agent: &str, place: usize) -> AgentStatus {
+    fn chart_status(&self, agent: &str, index: usize) -> AgentStatus {
         let shown = self.team.instance(agent).map(AgentInstance::chart_statuses).unwrap_or_default();
-        shown.get(place).map_or(AgentStatus::Stopped, |chart| chart.status)
+        shown.get(index).map_or(AgentStatus::Stopped, |chart| chart.status)
     }
 
-    fn inspect_chart(&self, agent: &str, place: usize, aspect: ChartAspect) -> Result<Vec<String>, String> {
-        let inspection = self.team.instance(agent).and_then(|instance| instance.inspect_chart(place, aspect));
+    fn inspect_chart(&self, agent: &str, index: usize, aspect: ChartAspect) -> Result<Vec<String>, String> {
+        let inspection = self.team.instance(agent).and_then(|instance| instance.inspect_chart(index, aspect));
         inspection.ok_or_else(|| format!("`{agent}` has no such statechart"))
     }
 
@@ -266,14 +266,14 @@ impl AgentControl for SimulatedAgents<'_> {
     fn launch(&mut self, member: PreparedAgent, _: Option<&ChangeRef>) -> Result<(), String> {
         let mut instance = AgentInstance::new(member, self.now);
         self.team.clock.into_iter().for_each(|clock| instance.measure(clock));
-        let place = self.team.instances.partition_point(|known| known.name() < instance.name());
-        self.team.instances.insert(place, instance);
+        let index = self.team.instances.partition_point(|known| known.name() < instance.name());
+        self.team.instances.insert(index, instance);
         Ok(())
     }
 
     fn remove(&mut self, agent: &str) -> Result<(), String> {
-        if let Some(place) = self.team.instances.iter().position(|known| known.name() == agent) {
-            let mut instance = self.team.instances.remove(place);
+        if let Some(index) = self.team.instances.iter().position(|known| known.name() == agent) {
+            let mut instance = self.team.instances.remove(index);
             instance.stop(END_REASON, self.now);
             self.team.removed.push(instance.statistics(&self.team.host));
         }

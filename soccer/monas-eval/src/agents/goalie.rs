@@ -9,7 +9,7 @@ use monas_soccer::functionality::guard::GoalPositioning;
 use monas_soccer::functionality::head::HeadController;
 use monas_soccer::{MotionKind, topics};
 
-use super::{StartUp, is_under_way};
+use super::{StartUp, is_executing};
 use crate::thresholds::goalie::*;
 
 /// Tracks the ball, stays between ball and goal, and falls or dives before a shot.
@@ -23,7 +23,7 @@ pub struct BehaviorGoalie {
 
 impl Activity for BehaviorGoalie {
     fn execute(&mut self, blackboard: &mut Blackboard) -> Result<Progress, BoxError> {
-        if self.start_up.is_ready(blackboard)? && !is_under_way(blackboard, self.diving) {
+        if self.start_up.is_ready(blackboard)? && !is_executing(blackboard, self.diving) {
             self.decide(blackboard)?;
         }
         Ok(Progress::Done)
@@ -44,7 +44,7 @@ impl BehaviorGoalie {
         if !ball.found {
             request_scan(blackboard)?;
             if let Some(ground) = ground {
-                let place = self.guard.place(&ground.field, None);
+                let place = self.guard.keeper_pose(&ground.field, None);
                 request_walk(blackboard, self.guard.walk(&ground.field_from_robot, &place))?;
             }
         } else if ball.approaching
@@ -64,7 +64,7 @@ impl BehaviorGoalie {
                 request_walk(blackboard, self.guard.step_before(ball.crossing_y))?;
             } else if let Some(ground) = ground {
                 let ball_in_field = ground.field_from_robot * ball.position();
-                let place = self.guard.place(&ground.field, Some(ball_in_field));
+                let place = self.guard.keeper_pose(&ground.field, Some(ball_in_field));
                 request_walk(blackboard, self.guard.walk(&ground.field_from_robot, &place))?;
             }
         }

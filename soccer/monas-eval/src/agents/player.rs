@@ -12,13 +12,13 @@ use monas_soccer::functionality::approach::Approach;
 use monas_soccer::functionality::avoidance::{avoid, keep_out};
 use monas_soccer::functionality::field::Goal;
 use monas_soccer::functionality::head::{Gaze, HeadController};
-use monas_soccer::functionality::support::{DISTANCE_AHEAD, support_place};
+use monas_soccer::functionality::support::{DISTANCE_AHEAD, support_position};
 use monas_soccer::functionality::walk::{Walk, stride_to, turn_to};
 use monas_soccer::{Ball, MotionKind, topics};
 use nalgebra::Point2;
 use narukom::Timestamp;
 
-use super::{StartUp, is_under_way};
+use super::{StartUp, is_executing};
 use crate::thresholds::player::*;
 
 /// Searches for the ball, walks to it, and kicks it towards the goal.
@@ -36,7 +36,7 @@ pub struct BehaviorPlayer {
 
 impl Activity for BehaviorPlayer {
     fn execute(&mut self, blackboard: &mut Blackboard) -> Result<Progress, BoxError> {
-        if self.start_up.is_ready(blackboard)? && !is_under_way(blackboard, self.kicking) {
+        if self.start_up.is_ready(blackboard)? && !is_executing(blackboard, self.kicking) {
             self.kicking = None;
             self.decide(blackboard)?;
         }
@@ -130,7 +130,7 @@ fn support(blackboard: &mut Blackboard, ball: &Ball) -> Result<(), BoxError> {
         return request_stand(blackboard);
     };
     let here = Point2::from(field_from_robot.translation.vector);
-    let place = support_place(&field, field_from_robot * ball.position(), here, DISTANCE_AHEAD);
+    let place = support_position(&field, field_from_robot * ball.position(), here, DISTANCE_AHEAD);
     let place = field_from_robot.inverse_transform_point(&place);
     let distance = place.coords.norm();
     let walk = if distance < 0.2 {

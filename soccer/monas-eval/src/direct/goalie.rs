@@ -29,7 +29,7 @@ impl Behaviour for DirectGoalie {
         if !ball.found {
             memory.gaze = GazeRequest::Scan;
             if let Some((field, pose)) = memory.ground() {
-                let place = self.guard.place(&field, None);
+                let place = self.guard.keeper_pose(&field, None);
                 memory.request(DesiredMotion::Walk(self.guard.walk(&pose, &place)));
             }
         } else if ball.approaching
@@ -49,7 +49,7 @@ impl Behaviour for DirectGoalie {
             if ball.approaching {
                 memory.request(DesiredMotion::Walk(self.guard.step_before(ball.crossing_y)));
             } else if let Some((field, pose)) = memory.ground() {
-                let place = self.guard.place(&field, Some(pose * ball.position()));
+                let place = self.guard.keeper_pose(&field, Some(pose * ball.position()));
                 memory.request(DesiredMotion::Walk(self.guard.walk(&pose, &place)));
             }
         }

@@ -10,7 +10,7 @@ use monas_soccer::functionality::avoidance::{avoid, keep_out};
 use monas_soccer::functionality::field::Goal;
 use monas_soccer::functionality::head::{Gaze, HeadController};
 use monas_soccer::functionality::motion::{DesiredMotion, Skill};
-use monas_soccer::functionality::support::{DISTANCE_AHEAD, support_place};
+use monas_soccer::functionality::support::{DISTANCE_AHEAD, support_position};
 use monas_soccer::functionality::walk::{Walk, stride_to, turn_to};
 use nalgebra::Point2;
 use narukom::Timestamp;
@@ -124,8 +124,12 @@ fn support(memory: &mut SharedMemory, ball: &Ball) {
         memory.request(DesiredMotion::Stand);
         return;
     };
-    let place =
-        support_place(&field, pose * ball.position(), Point2::from(pose.translation.vector), DISTANCE_AHEAD);
+    let place = support_position(
+        &field,
+        pose * ball.position(),
+        Point2::from(pose.translation.vector),
+        DISTANCE_AHEAD,
+    );
     let place = pose.inverse_transform_point(&place);
     let distance = place.coords.norm();
     let walk = if distance < 0.2 {

@@ -69,7 +69,7 @@ impl CameraFaults {
     fn add_ball(&mut self, view: &CameraView, sightings: &mut Vec<Sighting>) {
         let physics = view.physics();
         if self.stream.chance(physics.false_ball)
-            && let Some(percept) = self.place(view, physics.ball_radius, physics.ball_range)
+            && let Some(percept) = self.random_percept(view, physics.ball_radius, physics.ball_range)
         {
             sightings.push(Sighting::Ball(percept));
         }
@@ -78,7 +78,7 @@ impl CameraFaults {
     fn add_post(&mut self, view: &CameraView, sightings: &mut Vec<Sighting>) {
         let physics = view.physics();
         if self.stream.chance(physics.false_post)
-            && let Some(percept) = self.place(view, 0.0, physics.post_range)
+            && let Some(percept) = self.random_percept(view, 0.0, physics.post_range)
         {
             let goal = if self.stream.chance(0.5) { GoalColour::Blue } else { GoalColour::Yellow };
             sightings.push(Sighting::Post { goal, side: None, percept });
@@ -88,7 +88,7 @@ impl CameraFaults {
     fn add_robot(&mut self, view: &CameraView, sightings: &mut Vec<Sighting>) {
         let physics = view.physics();
         if self.stream.chance(physics.false_robot)
-            && let Some(percept) = self.place(view, 0.0, physics.robot_range)
+            && let Some(percept) = self.random_percept(view, 0.0, physics.robot_range)
         {
             let colour = if self.stream.chance(0.5) { TeamColour::Blue } else { TeamColour::Red };
             sightings.push(Sighting::Robot { colour, percept });
@@ -97,7 +97,7 @@ impl CameraFaults {
 
     /// A place in view, equally distributed in the pictures: of a point at a height above the
     /// ground, not beyond a range. None if the cameras show no such place.
-    fn place(&mut self, view: &CameraView, height: f64, range: f64) -> Option<Percept> {
+    fn random_percept(&mut self, view: &CameraView, height: f64, range: f64) -> Option<Percept> {
         /// Greatest angle below the horizon, rad; the feet are there.
         const MOST_ANGLE: f64 = FRAC_PI_2 - 0.1;
         let (physics, me) = (view.physics(), view.me());

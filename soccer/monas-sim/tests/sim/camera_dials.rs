@@ -32,11 +32,14 @@ fn pictures(physics: Physics, count: usize) -> Vec<Vec<Sighting>> {
     let robots = [(1, 2), (1, 3), (2, 2)].map(|(team, number)| RobotSetup { team, number });
     let setup = Setup { physics, robots: robots.to_vec(), ..Setup::three_against_three(4) };
     let mut world = SimulatedWorld::new(setup).unwrap();
-    let places = [Pose::default(), Pose::new(1.5, 0.5, 0.0), Pose::new(1.5, -0.5, 0.0)];
+    let positions = [Pose::default(), Pose::new(1.5, 0.5, 0.0), Pose::new(1.5, -0.5, 0.0)];
     let mut senses = Senses::default();
     let picture = |_| {
         world.step();
-        places.iter().enumerate().for_each(|(robot, place)| world.place_robot(robot, *place).unwrap());
+        positions
+            .iter()
+            .enumerate()
+            .for_each(|(robot, position)| world.place_robot(robot, *position).unwrap());
         world.place_ball(Vector::new(1.0, 0.0), Vector::zeros()).unwrap();
         world.sense(0, &mut senses).unwrap();
         assert!(senses.new_picture);

@@ -32,7 +32,7 @@ fn sightings_have_time_head_and_objects_of_their_exposure() {
     let (late, prompt) = (field(LATENCY), field(0.0));
     let seen = turn_head(&late, late.body(1).unwrap());
     let expected = turn_head(&prompt, prompt.body(1).unwrap());
-    // Three cycles of 20 ms; the last pictures are still on their way.
+    // Three cycles of 20 ms; the last pictures are still in transit.
     for (delivered, exposed) in seen[3..].iter().zip(&expected) {
         assert_eq!(delivered.1, exposed.1, "the same pictures, later");
         if let Some(sightings) = &delivered.1 {
@@ -80,8 +80,8 @@ fn a_moved_ball_is_seen_where_it_was() {
     let [near, far] = [0.8, 1.6].map(|ahead| pose.to_outer(Vector::new(ahead, 0.0)));
     let mut distances = Vec::new();
     for cycle in 1..=20 {
-        let place = if cycle <= 10 { near } else { far };
-        field.change(|world| world.place_ball(place, Vector::zeros())).unwrap();
+        let position = if cycle <= 10 { near } else { far };
+        field.change(|world| world.place_ball(position, Vector::zeros())).unwrap();
         (0..2).for_each(|_| field.step());
         percepts.clear_news();
         body.sense(Timestamp::from_nanos(cycle * CYCLE), &mut percepts).unwrap();

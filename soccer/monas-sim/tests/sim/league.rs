@@ -109,14 +109,14 @@ fn halted_robots_stand_and_sides_switch_in_the_second_half() {
         all.iter_mut().for_each(|robot| robot.halted = is_halted);
         all
     };
-    let place = || field.with_world(|world| world.robots()[1].pose.position);
+    let position = || field.with_world(|world| world.robots()[1].pose.position);
     for (is_halted, moves) in [(true, false), (false, true)] {
         field.follow(halted(is_halted)).unwrap();
         steps(&field, 1);
-        let before = place();
+        let before = position();
         body.act(Timestamp::ZERO, &Actuators { walk_x: 0.2, ..Actuators::default() }).unwrap();
         steps(&field, 200);
-        assert_eq!((place() - before).norm() > 0.05, moves, "halted: {is_halted}");
+        assert_eq!((position() - before).norm() > 0.05, moves, "halted: {is_halted}");
     }
     let mut second = announced(GamePhase::Initial);
     for robot in &mut second {

@@ -16,8 +16,8 @@ fn a_ball_rolls_as_far_as_documented() {
     let deceleration = Physics::default().ball_deceleration;
     assert!((world.ball().velocity.x - (1.0 - deceleration)).abs() < 0.01, "{:?}", world.ball());
     run(&mut world, 4.0);
-    let way = world.ball().position.x + 2.0;
-    assert!((way - 0.5 / deceleration).abs() < 0.03, "{way}");
+    let distance = world.ball().position.x + 2.0;
+    assert!((distance - 0.5 / deceleration).abs() < 0.03, "{distance}");
     assert_eq!(world.ball().velocity, Vector::zeros());
 }
 
@@ -86,8 +86,8 @@ fn a_robot_walks_no_faster_than_documented() {
     run(&mut world, 1.0);
     let start = world.robots()[1].pose.position.x;
     run(&mut world, 5.0);
-    let way = world.robots()[1].pose.position.x - start;
-    assert!((way - 5.0 * world.physics().walk_forward).abs() < 0.01, "{way}");
+    let distance = world.robots()[1].pose.position.x - start;
+    assert!((distance - 5.0 * world.physics().walk_forward).abs() < 0.01, "{distance}");
 }
 
 #[test]

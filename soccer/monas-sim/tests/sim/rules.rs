@@ -33,22 +33,22 @@ fn a_half_goes_from_initial_to_play() {
 #[test]
 fn robots_walk_in_ready_and_are_held_before_and_after_it() {
     let mut world = world(2);
-    let place = |world: &SimulatedWorld| world.robots()[2].pose.position;
-    let before = place(&world);
+    let position = |world: &SimulatedWorld| world.robots()[2].pose.position;
+    let before = position(&world);
     world.command(2, Command::walk(0.2, 0.0, 0.0)).unwrap();
     run(&mut world, 0.9);
-    assert_eq!((world.referee().state(), place(&world)), (GameState::Initial, before));
+    assert_eq!((world.referee().state(), position(&world)), (GameState::Initial, before));
     run(&mut world, 2.0);
-    assert!((place(&world) - before).norm() > 0.2);
+    assert!((position(&world) - before).norm() > 0.2);
     world.command(2, Command::new(Motion::Stand)).unwrap();
     while world.referee().state() == GameState::Ready {
         world.step();
     }
     assert!((5.9..7.0).contains(&world.time()), "READY ends 3 s after the last motion: {}", world.time());
-    let before = place(&world);
+    let before = position(&world);
     world.command(2, Command::walk(0.2, 0.0, 0.0)).unwrap();
     run(&mut world, 1.0);
-    assert_eq!((world.referee().state(), place(&world)), (GameState::Set, before));
+    assert_eq!((world.referee().state(), position(&world)), (GameState::Set, before));
 }
 
 #[test]
@@ -222,11 +222,12 @@ fn pushing_a_team_mate_is_not_penalized() {
 
 #[test]
 fn holding_the_ball_is_penalized_and_a_goalie_may_hold_it_longer() {
-    for (robot, place, time) in [(2, Pose::new(0.0, 1.0, 0.0), 3.0), (0, Pose::new(-2.8, 0.0, 0.0), 10.0)] {
+    for (robot, position, time) in [(2, Pose::new(0.0, 1.0, 0.0), 3.0), (0, Pose::new(-2.8, 0.0, 0.0), 10.0)]
+    {
         let mut world = playing(9);
         clear_field(&mut world, &[robot]);
-        world.place_robot(robot, place).unwrap();
-        world.place_ball(place.position + Vector::new(0.1235, 0.0), Vector::zeros()).unwrap();
+        world.place_robot(robot, position).unwrap();
+        world.place_ball(position.position + Vector::new(0.1235, 0.0), Vector::zeros()).unwrap();
         run(&mut world, time - 0.2);
         assert!(penalties(&world).is_empty(), "{:?}", world.events());
         run(&mut world, 0.6);
@@ -370,13 +371,13 @@ fn nothing_goes_on_in_a_stopped_game() {
     world.call(Call::Stop).unwrap();
     world.command(1, Command::walk(0.2, 0.0, 0.0)).unwrap();
     world.step();
-    let (place, left) = (world.robots()[1].pose.position, world.referee().seconds_remaining());
+    let (position, left) = (world.robots()[1].pose.position, world.referee().seconds_remaining());
     assert!(world.announcement(1).unwrap().halted);
     run(&mut world, 3.0);
-    assert_eq!(world.robots()[1].pose.position, place);
+    assert_eq!(world.robots()[1].pose.position, position);
     assert_eq!(world.referee().seconds_remaining(), left);
     world.call(Call::Resume).unwrap();
     run(&mut world, 3.0);
-    assert!((world.robots()[1].pose.position - place).norm() > 0.1);
+    assert!((world.robots()[1].pose.position - position).norm() > 0.1);
     assert!((left - world.referee().seconds_remaining() - 3.0).abs() < 0.02);
 }

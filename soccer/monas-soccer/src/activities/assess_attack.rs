@@ -51,7 +51,7 @@ impl AssessAttack {
             opponents_stand: opponents_stand(blackboard),
         };
         let mate_sees_ball = !blackboard.read(topics::BALL).is_some_and(|ball| ball.found);
-        Some(Attack { mate_sees_ball, ..message(&evaluate(&scene), own.place) })
+        Some(Attack { mate_sees_ball, ..message(&evaluate(&scene), own.position) })
     }
 
     /// The ball as seen by this player or, if it does not see it, by the team mate with the newest
@@ -101,13 +101,13 @@ fn mates(
     let mut mates: Vec<AttackPlayer> = Vec::new();
     for report in reports {
         let mut mate = player(report, ball);
-        let distance = |place: &Point2<f64>| (place - mate.place).norm();
+        let distance = |position: &Point2<f64>| (position - mate.position).norm();
         let nearest = (0..seen.len()).min_by(|a, b| distance(&seen[*a]).total_cmp(&distance(&seen[*b])));
         if let Some(index) =
             nearest.filter(|index| distance(&seen[*index]) < MATCHING_DISTANCE + MATCHING_SPEED * report.age)
         {
-            mate.place = seen.swap_remove(index);
-            mate.ball_distance = (mate.place - ball).norm();
+            mate.position = seen.swap_remove(index);
+            mate.ball_distance = (mate.position - ball).norm();
         }
         mates.push(mate);
     }
@@ -126,12 +126,12 @@ const UNSEEN_BALL_HANDICAP: f64 = 1.0;
 const REPORT_AGE_HANDICAP: f64 = 0.05;
 
 fn player(report: &TeamReport, ball: Point2<f64>) -> AttackPlayer {
-    let place = Point2::new(report.x, report.y);
+    let position = Point2::new(report.x, report.y);
     AttackPlayer {
-        place,
+        position,
         heading: report.heading,
         // A player's own measurement of its distance from the ball is the most accurate.
-        ball_distance: if report.ball_found { report.ball_distance } else { (place - ball).norm() },
+        ball_distance: if report.ball_found { report.ball_distance } else { (position - ball).norm() },
         handicap: FALLEN_HANDICAP * f64::from(u8::from(report.is_down))
             + UNSEEN_BALL_HANDICAP * f64::from(u8::from(!report.ball_found))
             + REPORT_AGE_HANDICAP * report.age,

@@ -3,7 +3,7 @@
 use monas::{Activity, Blackboard, BoxError, Progress, Topics};
 
 use super::support_mate::wait_at;
-use crate::functionality::support::cover_place;
+use crate::functionality::support::cover_position;
 use crate::topics;
 
 /// Walks to a place between the ball and the own goal, and stays there facing the ball. Stands
@@ -13,7 +13,7 @@ pub struct CoverGoal;
 
 impl Activity for CoverGoal {
     fn execute(&mut self, blackboard: &mut Blackboard) -> Result<Progress, BoxError> {
-        wait_at(blackboard, |ground, ball| cover_place(&ground.field, ball))
+        wait_at(blackboard, |ground, ball| cover_position(&ground.field, ball))
     }
 
     fn topics(&self) -> Topics {

@@ -31,8 +31,8 @@ impl Activity for KeepGoal {
             return Ok(Progress::Done);
         };
         let ball_in_field = ground.field_from_robot * ball.position();
-        let place = self.guard.place(&ground.field, Some(ball_in_field));
-        request_walk(blackboard, self.guard.walk(&ground.field_from_robot, &place))?;
+        let pose = self.guard.keeper_pose(&ground.field, Some(ball_in_field));
+        request_walk(blackboard, self.guard.walk(&ground.field_from_robot, &pose))?;
         Ok(Progress::Done)
     }
 
@@ -45,8 +45,8 @@ impl Activity for KeepGoal {
 impl Activity for ReturnToGoal {
     fn execute(&mut self, blackboard: &mut Blackboard) -> Result<Progress, BoxError> {
         let Some(ground) = ground(blackboard) else { return Ok(Progress::Done) };
-        let place = self.guard.place(&ground.field, None);
-        request_walk(blackboard, self.guard.walk(&ground.field_from_robot, &place))?;
+        let pose = self.guard.keeper_pose(&ground.field, None);
+        request_walk(blackboard, self.guard.walk(&ground.field_from_robot, &pose))?;
         Ok(Progress::Done)
     }
 

@@ -67,8 +67,8 @@ impl Activity for PassBall {
 /// hardest kick, without a ball.
 fn pass_speed(blackboard: &Blackboard) -> f64 {
     let Some(ball) = blackboard.read(topics::BALL).copied() else { return 0.0 };
-    let way = (mate(blackboard, &ball, ground(blackboard).as_ref()) - ball.position()).norm();
-    BallModel::default().speed_for(way, ARRIVAL_SPEED)
+    let distance = (mate(blackboard, &ball, ground(blackboard).as_ref()) - ball.position()).norm();
+    BallModel::default().speed_for(distance, ARRIVAL_SPEED)
 }
 
 impl PassBall {

@@ -133,7 +133,7 @@ impl RobotController {
             set_play: said.set_play,
             ..GameState::default()
         }
-        .with_place()
+        .with_kick_off_pose()
     }
 }
 

@@ -7,7 +7,7 @@ use super::motion_requests::{request_stand, request_walk};
 use super::shot::{RobotAndField, ground, others};
 use crate::Ball;
 use crate::functionality::avoidance::{avoid, keep_out};
-use crate::functionality::support::{DISTANCE_AHEAD, support_place};
+use crate::functionality::support::{DISTANCE_AHEAD, support_position};
 use crate::functionality::walk::{Walk, stride_to, turn_to};
 use crate::topics;
 
@@ -34,7 +34,7 @@ impl Activity for SupportMate {
     fn execute(&mut self, blackboard: &mut Blackboard) -> Result<Progress, BoxError> {
         wait_at(blackboard, |ground, ball| {
             let here = Point2::from(ground.field_from_robot.translation.vector);
-            support_place(&ground.field, ball, here, self.ahead)
+            support_position(&ground.field, ball, here, self.ahead)
         })
     }
 
@@ -48,28 +48,28 @@ impl Activity for SupportMate {
 /// ball. Stands still while the pose is unknown.
 pub(super) fn wait_at(
     blackboard: &mut Blackboard,
-    place: impl FnOnce(&RobotAndField, Point2<f64>) -> Point2<f64>,
+    position: impl FnOnce(&RobotAndField, Point2<f64>) -> Point2<f64>,
 ) -> Result<Progress, BoxError> {
     let (Some(ball), Some(ground)) = (blackboard.read(topics::BALL).copied(), ground(blackboard)) else {
         request_stand(blackboard)?;
         return Ok(Progress::Done);
     };
     let obstacles: Vec<Point2<f64>> = others(blackboard).map(|robot| robot.position()).collect();
-    let place = place(&ground, ground.field_from_robot * ball.position());
-    let walk = walk_to(ground.field_from_robot.inverse_transform_point(&place), &ball, &obstacles);
+    let position = position(&ground, ground.field_from_robot * ball.position());
+    let walk = walk_to(ground.field_from_robot.inverse_transform_point(&position), &ball, &obstacles);
     request_walk(blackboard, keep_out(walk, &ground.field, &ground.field_from_robot))?;
     Ok(Progress::Done)
 }
 
 /// The walk to a position in the robot's frame, which avoids robots and ball; there it turns to the
 /// ball.
-pub(super) fn walk_to(place: Point2<f64>, ball: &Ball, obstacles: &[Point2<f64>]) -> Walk {
-    let distance = place.coords.norm();
+pub(super) fn walk_to(position: Point2<f64>, ball: &Ball, obstacles: &[Point2<f64>]) -> Walk {
+    let distance = position.coords.norm();
     if distance < 0.2 {
         return Walk::turning(turn_to(ball.bearing));
     }
     let obstacles: Vec<Point2<f64>> = obstacles.iter().copied().chain([ball.position()]).collect();
-    stride_to(avoid(place, &obstacles), distance)
+    stride_to(avoid(position, &obstacles), distance)
 }
 
 monas::activity!(SupportMate);

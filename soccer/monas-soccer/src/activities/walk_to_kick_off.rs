@@ -19,10 +19,10 @@ impl Activity for WalkToKickOff {
     fn execute(&mut self, blackboard: &mut Blackboard) -> Result<Progress, BoxError> {
         request_scan(blackboard)?;
         let Some(game) = blackboard.read(topics::GAME_STATE) else { return Ok(Progress::Done) };
-        let place = game.place();
+        let wanted = game.kick_off_pose();
         let pose = blackboard.read(topics::POSE).map(|pose| (pose.field_from_robot(), pose.confidence));
         let robots: Vec<Point2<f64>> = others(blackboard).map(|robot| robot.position()).collect();
-        let walk = self.walk.walk(blackboard.now(), pose, &place, &robots);
+        let walk = self.walk.walk(blackboard.now(), pose, &wanted, &robots);
         request_walk(blackboard, walk)?;
         Ok(Progress::Done)
     }

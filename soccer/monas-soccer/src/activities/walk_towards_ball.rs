@@ -7,7 +7,7 @@ use super::motion_requests::request_walk;
 use super::shot::{RobotAndField, ground, others, target};
 use crate::functionality::approach::Approach;
 use crate::functionality::avoidance::keep_out;
-use crate::functionality::interception::meeting_place;
+use crate::functionality::interception::meeting_point;
 use crate::{Ball, topics};
 
 /// Walks behind the ball, so that it lies between the robot and the opponents' goal, avoiding other
@@ -47,7 +47,7 @@ impl Activity for WalkTowardsBall {
         let obstacles: Vec<Point2<f64>> = others(blackboard).map(|robot| robot.position()).collect();
         let ground = ground(blackboard);
         let target = target(blackboard, &ball, ground.as_ref());
-        let walk = self.approach.walk(self.place(&ball, ground.as_ref()), target, &obstacles);
+        let walk = self.approach.walk(self.meeting_point(&ball, ground.as_ref()), target, &obstacles);
         let walk = ground.map_or(walk, |ground| keep_out(walk, &ground.field, &ground.field_from_robot));
         request_walk(blackboard, walk)?;
         Ok(Progress::Done)
@@ -61,15 +61,15 @@ impl Activity for WalkTowardsBall {
 
 impl WalkTowardsBall {
     /// The point at which the robot meets the ball, on the field, in the robot's frame.
-    fn place(&self, ball: &Ball, ground: Option<&RobotAndField>) -> Point2<f64> {
+    fn meeting_point(&self, ball: &Ball, ground: Option<&RobotAndField>) -> Point2<f64> {
         if self.foresight <= 0.0 {
             return ball.position();
         }
         let (position, velocity) = (ball.position(), ball.velocity());
-        let place = meeting_place(position, velocity, ROLLING_DECELERATION, EFFECTIVE_SPEED, self.foresight);
-        let Some(RobotAndField { field, field_from_robot }) = ground else { return place };
+        let point = meeting_point(position, velocity, ROLLING_DECELERATION, EFFECTIVE_SPEED, self.foresight);
+        let Some(RobotAndField { field, field_from_robot }) = ground else { return point };
         let (end, side) = (field.length / 2.0, field.width / 2.0);
-        let there = field_from_robot * place;
+        let there = field_from_robot * point;
         let there = Point2::new(there.x.clamp(-end, end), there.y.clamp(-side, side));
         field_from_robot.inverse_transform_point(&there)
     }

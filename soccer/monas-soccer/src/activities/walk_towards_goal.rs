@@ -11,7 +11,7 @@ use super::motion_requests::{request_gaze, request_walk};
 use super::shot::{ground, others};
 use super::support_mate::walk_to;
 use crate::functionality::head::HeadController;
-use crate::functionality::support::{DISTANCE_AHEAD, support_place};
+use crate::functionality::support::{DISTANCE_AHEAD, support_position};
 use crate::{AttackPart, topics};
 
 /// Walks towards the opponents' goal to a position for receiving a pass, and waits there facing the
@@ -39,10 +39,10 @@ impl Activity for WalkTowardsGoal {
             return Ok(Progress::after(POLL_INTERVAL));
         };
         let here = Point2::from(ground.field_from_robot.translation.vector);
-        let place =
-            support_place(&ground.field, ground.field_from_robot * ball.position(), here, DISTANCE_AHEAD);
+        let position =
+            support_position(&ground.field, ground.field_from_robot * ball.position(), here, DISTANCE_AHEAD);
         let obstacles: Vec<Point2<f64>> = others(blackboard).map(|robot| robot.position()).collect();
-        let walk = walk_to(ground.field_from_robot.inverse_transform_point(&place), &ball, &obstacles);
+        let walk = walk_to(ground.field_from_robot.inverse_transform_point(&position), &ball, &obstacles);
         request_gaze(blackboard, self.head.look_at(ball.position()))?;
         request_walk(blackboard, walk)?;
         Ok(Progress::after(POLL_INTERVAL))

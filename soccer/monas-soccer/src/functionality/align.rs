@@ -80,9 +80,9 @@ impl Alignment {
     /// correction of its position is added.
     fn turn_round(&self, ball: Point2<f64>, off: f64) -> Walk {
         let turn = (TURN_GAIN * off).clamp(-self.turn_speed, self.turn_speed);
-        let place = Point2::new(self.turn_x, self.kick_point(ball).y);
+        let position = Point2::new(self.turn_x, self.kick_point(ball).y);
         let around = Vector2::new(turn * ball.y, -turn * ball.x);
-        Walk::along(around + (ball - place) * GAIN, turn)
+        Walk::along(around + (ball - position) * GAIN, turn)
     }
 }
 

@@ -37,15 +37,15 @@ impl Approach {
     /// frame.
     pub fn walk(&self, ball: Point2<f64>, target: Point2<f64>, obstacles: &[Point2<f64>]) -> Walk {
         let shot = (target - ball).try_normalize(1e-6).unwrap_or(Vector2::x());
-        let (next, way) = self.next_point(ball, shot);
+        let (next, distance) = self.next_point(ball, shot);
         let aside = avoid(next, obstacles);
         if aside != next {
-            return stride_to(aside, way.max(aside.coords.norm()));
+            return stride_to(aside, distance.max(aside.coords.norm()));
         }
-        if way > self.face_target {
-            return stride_to(next, way);
+        if distance > self.face_target {
+            return stride_to(next, distance);
         }
-        walk_to(next, way, angle_of(&shot))
+        walk_to(next, distance, angle_of(&shot))
     }
 
     /// The next point of the path, and the length of the remaining path.
@@ -57,11 +57,12 @@ impl Approach {
             return (behind, behind.coords.norm());
         }
         let other = if round > 0.0 { round - TAU } else { round + TAU };
-        let ways = [self.round_ball(ball, round), self.round_ball(ball, other)];
+        let walks = [self.round_ball(ball, round), self.round_ball(ball, other)];
         // The cost includes turning, so that a robot that has begun to turn to one side continues
         // despite noise in `round`.
-        let cost = |way: &(Point2<f64>, f64)| way.1 + TURN_COST * angle_of(&way.0.coords).abs();
-        if cost(&ways[1]) < cost(&ways[0]) { ways[1] } else { ways[0] }
+        let cost =
+            |distance: &(Point2<f64>, f64)| distance.1 + TURN_COST * angle_of(&distance.0.coords).abs();
+        if cost(&walks[1]) < cost(&walks[0]) { walks[1] } else { walks[0] }
     }
 
     /// The next point of the path round the ball by an angle, and the length of that path.
@@ -123,8 +124,8 @@ mod tests {
             distance in 0.5..5.0f64, direction in 0.0..TAU, start_heading in -PI..PI
         ) {
             let (ball, target) = (Point2::origin(), Point2::new(3.0, 0.0));
-            let place = polar(distance, direction);
-            let (seconds, end, _) = walk_up(pose(place.x, place.y, start_heading), ball, target);
+            let position = polar(distance, direction);
+            let (seconds, end, _) = walk_up(pose(position.x, position.y, start_heading), ball, target);
             prop_assert!(seconds < 12.0 + distance / 0.2, "took {seconds} s");
             prop_assert!(heading(&end).abs() < 0.4, "arrives with heading {}", heading(&end));
             prop_assert!(end.translation.x < -0.2 && end.translation.y.abs() < 0.12, "arrives at {}", end.translation);

@@ -59,7 +59,7 @@ pub enum AttackRole {
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct AttackPlayer {
     /// Its position.
-    pub place: Point2<f64>,
+    pub position: Point2<f64>,
     /// Its heading, radians.
     pub heading: f64,
     /// Its distance from the ball, metres.
@@ -138,21 +138,21 @@ pub fn evaluate(scene: &AttackSituation<'_>) -> AttackState {
     };
     let is_kept_out = scene.field.in_own_area(scene.ball, 0.0);
     let Some((center, center_for)) = parts(scene).filter(|_| !is_kept_out) else { return alone };
-    let pays = pass_pays(scene, center_for.place);
+    let pays = pass_pays(scene, center_for.position);
     let is_passed = center.since_pass < PASS_TIME;
     // At the ball, with the goal covered, it shoots as it would alone.
     let is_covered = scene.at_foot && faces_goal(scene) && !path_is_clear(scene);
     // At the ball, facing a partner that no pass can reach, it does not wait.
     let is_blocked =
-        scene.at_foot && faces(scene, center_for.place) && !pass_is_open(scene, center_for.place);
+        scene.at_foot && faces(scene, center_for.position) && !pass_is_open(scene, center_for.position);
     let (part, mate) = match (std::ptr::eq(center, &scene.own), std::ptr::eq(center_for, &scene.own)) {
         // The part of the center ends with its pass.
         (true, _) if is_passed => (None, None),
         _ if !is_passed && (!pays || center.ball_distance > CENTER_DISTANCE) => (None, None),
         (true, _) if is_blocked => (None, None),
-        (true, _) => (Some(AttackRole::Center), Some(center_for.place)),
+        (true, _) => (Some(AttackRole::Center), Some(center_for.position)),
         (_, true) if is_passed && is_covered => (None, None),
-        (_, true) => (Some(AttackRole::CenterFor), Some(center.place)),
+        (_, true) => (Some(AttackRole::CenterFor), Some(center.position)),
         _ => (None, None),
     };
     AttackState {
@@ -160,7 +160,7 @@ pub fn evaluate(scene: &AttackSituation<'_>) -> AttackState {
         center_for_is_farthest: center_for.ball_distance > center.ball_distance + CENTER_MARGIN,
         part,
         mate,
-        pass_is_open: part == Some(AttackRole::Center) && pass_is_open(scene, center_for.place),
+        pass_is_open: part == Some(AttackRole::Center) && pass_is_open(scene, center_for.position),
         ball_is_passed: is_passed,
         path_is_clear: part == Some(AttackRole::CenterFor) && path_is_clear(scene),
         ..alone
@@ -184,9 +184,9 @@ fn parts<'a>(scene: &'a AttackSituation<'_>) -> Option<(&'a AttackPlayer, &'a At
     Some((nearest, but(nearest).max_by(by_distance)?))
 }
 
-/// The way to the place behind the ball, as metres of straight walk.
+/// The path to the position behind the ball, as metres of straight walk.
 fn cost(scene: &AttackSituation<'_>, player: &AttackPlayer) -> f64 {
-    let (to_ball, shot) = (scene.ball - player.place, scene.field.goal(Goal::Opponent) - scene.ball);
+    let (to_ball, shot) = (scene.ball - player.position, scene.field.goal(Goal::Opponent) - scene.ball);
     let yields = if player.since_pass < YIELD { YIELD_COST } else { 0.0 };
     let turn = wrap(angle_of(&to_ball) - player.heading).abs();
     let round = wrap(angle_of(&shot) - angle_of(&to_ball)).abs();
@@ -224,8 +224,8 @@ fn ball_is_out(scene: &AttackSituation<'_>) -> bool {
 }
 
 fn pass_is_open(scene: &AttackSituation<'_>, receiver: Point2<f64>) -> bool {
-    let way = (receiver - scene.ball).norm();
-    (PASS_LENGTH.0..PASS_LENGTH.1).contains(&way) && faces(scene, receiver) && is_free(scene, receiver)
+    let distance = (receiver - scene.ball).norm();
+    (PASS_LENGTH.0..PASS_LENGTH.1).contains(&distance) && faces(scene, receiver) && is_free(scene, receiver)
 }
 
 /// Whether a pass is better than a shot: the goal is far, the receiver is not behind the ball, and
@@ -262,12 +262,12 @@ mod tests {
     use super::*;
 
     fn player(x: f64, y: f64) -> AttackPlayer {
-        let place = Point2::new(x, y);
+        let position = Point2::new(x, y);
         let far = f64::INFINITY;
         AttackPlayer {
-            place,
+            position,
             heading: 0.0,
-            ball_distance: place.coords.norm(),
+            ball_distance: position.coords.norm(),
             handicap: 0.0,
             since_pass: far,
             since_shot: far,
@@ -299,7 +299,7 @@ mod tests {
         let one = evaluate(&scene(near, &[far], &[]));
         let other = evaluate(&scene(far, &[near], &[]));
         assert_eq!((one.part, other.part), (Some(AttackRole::Center), Some(AttackRole::CenterFor)));
-        assert_eq!((one.mate, other.mate), (Some(far.place), Some(near.place)));
+        assert_eq!((one.mate, other.mate), (Some(far.position), Some(near.position)));
         for it in [one, other] {
             assert!(it.ball_is_free && it.center_is_closest && it.center_for_is_farthest);
         }
@@ -437,13 +437,13 @@ mod tests {
         assert!(evaluate(&scene(own, &[mate], &[Point2::new(0.3, 0.0)])).opponent_has_ball);
         let contested = player(0.2, 0.0);
         assert!(!evaluate(&scene(contested, &[mate], &[Point2::new(0.3, 0.0)])).opponent_has_ball);
-        for (place, rolling, is_out) in [
+        for (position, rolling, is_out) in [
             ((0.0, 1.9), (0.0, 1.0), true),
             ((0.0, 1.9), (0.0, -1.0), false),
             ((3.1, 0.0), (0.0, 0.0), true),
             ((1.0, 1.0), (0.5, 0.5), false),
         ] {
-            let (ball, rolling) = (Point2::new(place.0, place.1), Vector2::new(rolling.0, rolling.1));
+            let (ball, rolling) = (Point2::new(position.0, position.1), Vector2::new(rolling.0, rolling.1));
             assert_eq!(
                 evaluate(&AttackSituation { ball, rolling, ..scene(own, &[mate], &[]) }).ball_is_out,
                 is_out

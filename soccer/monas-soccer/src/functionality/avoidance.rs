@@ -11,22 +11,22 @@ pub const CLEARANCE: f64 = 0.45;
 /// Distance beyond which robots are not yet obstacles, metres.
 const LOOK_AHEAD: f64 = 1.3;
 
-/// The next point of a path to `place` that avoids the nearest blocking obstacle: beside the
-/// obstacle, on the side nearer to the straight line; `place` itself if the line is free. All in
+/// The next point of a path to `position` that avoids the nearest blocking obstacle: beside the
+/// obstacle, on the side nearer to the straight line; `position` itself if the line is free. All in
 /// the robot's frame, the robot at the origin.
-pub fn avoid(place: Point2<f64>, obstacles: &[Point2<f64>]) -> Point2<f64> {
-    let blocking = obstacles.iter().filter(|obstacle| blocks(obstacle, place));
+pub fn avoid(position: Point2<f64>, obstacles: &[Point2<f64>]) -> Point2<f64> {
+    let blocking = obstacles.iter().filter(|obstacle| blocks(obstacle, position));
     let nearest = blocking.min_by(|a, b| a.coords.norm().total_cmp(&b.coords.norm()));
-    nearest.map_or(place, |obstacle| beside(*obstacle, place))
+    nearest.map_or(position, |obstacle| beside(*obstacle, position))
 }
 
-fn blocks(obstacle: &Point2<f64>, place: Point2<f64>) -> bool {
-    let (distance, part) = distance_to_segment(*obstacle, Point2::origin(), place);
+fn blocks(obstacle: &Point2<f64>, position: Point2<f64>) -> bool {
+    let (distance, part) = distance_to_segment(*obstacle, Point2::origin(), position);
     part > 0.0 && distance < CLEARANCE && obstacle.coords.norm() < LOOK_AHEAD
 }
 
-fn beside(obstacle: Point2<f64>, place: Point2<f64>) -> Point2<f64> {
-    let direction = place.coords.try_normalize(1e-6).unwrap_or(Vector2::x());
+fn beside(obstacle: Point2<f64>, position: Point2<f64>) -> Point2<f64> {
+    let direction = position.coords.try_normalize(1e-6).unwrap_or(Vector2::x());
     let left = Vector2::new(-direction.y, direction.x);
     let side = if left.dot(&obstacle.coords) > 0.0 { -1.0 } else { 1.0 };
     obstacle + left * (side * CLEARANCE * 1.1)
@@ -82,19 +82,19 @@ mod tests {
 
     #[test]
     fn a_free_way_is_kept() {
-        let place = Point2::new(2.0, 0.0);
-        assert_eq!(avoid(place, &[]), place);
+        let position = Point2::new(2.0, 0.0);
+        assert_eq!(avoid(position, &[]), position);
         assert_eq!(
-            avoid(place, &[Point2::new(1.0, 0.6), Point2::new(-0.3, 0.0), Point2::new(1.8, 0.0)]),
-            place
+            avoid(position, &[Point2::new(1.0, 0.6), Point2::new(-0.3, 0.0), Point2::new(1.8, 0.0)]),
+            position
         );
     }
 
     #[test]
     fn an_obstacle_is_passed_on_the_nearer_side() {
-        let place = Point2::new(2.0, 0.0);
-        assert!(avoid(place, &[Point2::new(1.0, 0.1)]).y < -0.3);
-        assert!(avoid(place, &[Point2::new(1.0, -0.1)]).y > 0.3);
+        let position = Point2::new(2.0, 0.0);
+        assert!(avoid(position, &[Point2::new(1.0, 0.1)]).y < -0.3);
+        assert!(avoid(position, &[Point2::new(1.0, -0.1)]).y > 0.3);
     }
 
     #[test]

@@ -36,8 +36,8 @@ pub struct BallModel {
 impl BallModel {
     /// The initial speed of a ball, m/s, that arrives at a given distance, in metres, with a given
     /// speed, in m/s. Zero, which requests the fastest kick, for a distance of zero.
-    pub fn speed_for(&self, way: f64, arrival: f64) -> f64 {
-        libm::sqrt((2.0 * self.rolling_deceleration * way + arrival * arrival).max(0.0))
+    pub fn speed_for(&self, distance: f64, arrival: f64) -> f64 {
+        libm::sqrt((2.0 * self.rolling_deceleration * distance + arrival * arrival).max(0.0))
     }
 }
 
@@ -194,11 +194,11 @@ impl BallFilter {
     /// White acceleration, constant during the step.
     fn process_noise(&self, dt: f64) -> Matrix4<f64> {
         let variance = self.model.acceleration_noise * self.model.acceleration_noise;
-        let (place, both, speed) = (dt * dt * dt * dt / 4.0, dt * dt * dt / 2.0, dt * dt);
+        let (position, both, speed) = (dt * dt * dt * dt / 4.0, dt * dt * dt / 2.0, dt * dt);
         #[rustfmt::skip]
         let shape = Matrix4::new(
-            place, 0.0,   both,  0.0,
-            0.0,   place, 0.0,   both,
+            position, 0.0,   both,  0.0,
+            0.0,   position, 0.0,   both,
             both,  0.0,   speed, 0.0,
             0.0,   both,  0.0,   speed,
         );
@@ -299,9 +299,9 @@ mod tests {
     }
 
     /// Asserts that the ball is at a place.
-    fn assert_at(filter: &BallFilter, place: Point2<f64>) {
+    fn assert_at(filter: &BallFilter, position: Point2<f64>) {
         let ball = filter.estimate().unwrap();
-        assert!((ball.position - place).norm() < 0.02, "{ball:?}");
+        assert!((ball.position - position).norm() < 0.02, "{ball:?}");
     }
 
     /// A filter that has seen a ball at a place in ten pictures.

@@ -56,8 +56,8 @@ impl FieldModel {
     }
 
     /// Whether a position is in the own goal area, or within a margin of it.
-    pub fn in_own_area(&self, place: Point2<f64>, margin: f64) -> bool {
-        place.x < self.area_front() + margin && place.y.abs() < self.area_width / 2.0 + margin
+    pub fn in_own_area(&self, position: Point2<f64>, margin: f64) -> bool {
+        position.x < self.area_front() + margin && position.y.abs() < self.area_width / 2.0 + margin
     }
 
     /// The x coordinate of the front of the own goal area.

@@ -29,7 +29,7 @@ pub struct GoalPositioning {
 }
 
 /// A ball that crosses nearer than this hits the keeper's centre, metres.
-const STEP_NOT: f64 = 0.03;
+const STEP_DEAD_BAND: f64 = 0.03;
 /// Gain from lateral distance to velocity, 1/s; high because there is little time.
 const STEP_GAIN: f64 = 4.0;
 
@@ -49,7 +49,7 @@ impl Default for GoalPositioning {
 impl GoalPositioning {
     /// The keeper's pose in the field for a ball in the field; without a ball, in front of the
     /// middle of the goal.
-    pub fn place(&self, field: &FieldModel, ball: Option<Point2<f64>>) -> Isometry2<f64> {
+    pub fn keeper_pose(&self, field: &FieldModel, ball: Option<Point2<f64>>) -> Isometry2<f64> {
         let goal = field.goal(Goal::Own);
         let Some(ball) = ball else { return pose(goal.x + self.before_line.0.max(self.radius), 0.0, 0.0) };
         let to_ball = ball - goal;
@@ -71,7 +71,7 @@ impl GoalPositioning {
     /// The side step towards a ball that crosses the keeper's lateral axis `crossing_y` metres to
     /// its left.
     pub fn step_before(&self, crossing_y: f64) -> Walk {
-        if crossing_y.abs() < STEP_NOT {
+        if crossing_y.abs() < STEP_DEAD_BAND {
             Walk::STILL
         } else {
             Walk { left: STEP_GAIN * crossing_y, ..Walk::STILL }
@@ -79,17 +79,17 @@ impl GoalPositioning {
     }
 
     /// The walk to a pose in the field frame.
-    pub fn walk(&self, field_from_robot: &Isometry2<f64>, field_from_place: &Isometry2<f64>) -> Walk {
-        let robot_from_place = field_from_robot.inverse() * field_from_place;
-        let place = Point2::from(robot_from_place.translation.vector);
-        let (way, off) = (place.coords.norm(), wrap(heading(&robot_from_place)));
-        if way > 0.6 {
-            return stride_to(place, way);
+    pub fn walk(&self, field_from_robot: &Isometry2<f64>, field_from_target: &Isometry2<f64>) -> Walk {
+        let robot_from_target = field_from_robot.inverse() * field_from_target;
+        let position = Point2::from(robot_from_target.translation.vector);
+        let (distance, off) = (position.coords.norm(), wrap(heading(&robot_from_target)));
+        if distance > 0.6 {
+            return stride_to(position, distance);
         }
-        if way <= self.content.0 && off.abs() <= self.content.1 {
+        if distance <= self.content.0 && off.abs() <= self.content.1 {
             return Walk::STILL;
         }
-        walk_to(place, way, off)
+        walk_to(position, distance, off)
     }
 }
 
@@ -104,22 +104,22 @@ mod tests {
 
     const FIELD: FieldModel = FieldModel::LEAGUE_2010;
 
-    fn place(x: f64, y: f64) -> (f64, f64, f64) {
-        let place = GoalPositioning::default().place(&FIELD, Some(Point2::new(x, y)));
-        (place.translation.x, place.translation.y, heading(&place))
+    fn keeper_position(x: f64, y: f64) -> (f64, f64, f64) {
+        let wanted = GoalPositioning::default().keeper_pose(&FIELD, Some(Point2::new(x, y)));
+        (wanted.translation.x, wanted.translation.y, heading(&wanted))
     }
 
     #[test]
     fn without_a_ball_it_stands_at_the_centre_of_the_goal() {
-        assert_eq!(GoalPositioning::default().place(&FIELD, None), pose(-2.65, 0.0, 0.0));
+        assert_eq!(GoalPositioning::default().keeper_pose(&FIELD, None), pose(-2.65, 0.0, 0.0));
     }
 
     #[test]
     fn it_comes_out_to_a_near_ball_on_its_side() {
-        let (far, near) = (place(0.0, 1.0), place(-2.3, 0.3));
+        let (far, near) = (keeper_position(0.0, 1.0), keeper_position(-2.3, 0.3));
         assert!((-2.7..-2.6).contains(&far.0) && (0.05..0.2).contains(&far.1), "{far:?}");
         assert!(near.0 > far.0 + 0.05 && near.1 > 0.1 && near.2 > 0.1, "{near:?}");
-        let corner = place(-2.95, 1.5);
+        let corner = keeper_position(-2.95, 1.5);
         assert!((corner.0 + 2.85).abs() < 1e-9 && corner.1 > 0.3, "{corner:?}");
     }
 
@@ -133,7 +133,7 @@ mod tests {
     proptest! {
         #[test]
         fn its_place_is_between_the_posts_and_in_its_area(x in -3.2..3.0f64, y in -2.0..2.0f64) {
-            let (x, y, heading) = place(x, y);
+            let (x, y, heading) = keeper_position(x, y);
             prop_assert!((-2.86..=-2.49).contains(&x) && y.abs() <= 0.56, "{x} {y}");
             prop_assert!(heading.abs() <= PI / 2.0 + 1e-9);
         }
@@ -143,15 +143,15 @@ mod tests {
     fn it_returns_between_the_posts_and_stands() {
         let gait = GaitLimits { forward: 0.25, backward: 0.12, sideways: 0.12, turn: 1.0 };
         let guard = GoalPositioning::default();
-        let place = guard.place(&FIELD, None);
+        let wanted = guard.keeper_pose(&FIELD, None);
         for start in [pose(-1.0, 1.5, PI), pose(-2.7, -0.6, -1.5), pose(-3.2, 0.3, 3.0)] {
             let mut field_from_robot = start;
             for _ in 0..300 {
-                let walk = gait.limit(&guard.walk(&field_from_robot, &place));
+                let walk = gait.limit(&guard.walk(&field_from_robot, &wanted));
                 field_from_robot *= pose(walk.ahead * 0.1, walk.left * 0.1, walk.turn * 0.1);
             }
-            assert_eq!(guard.walk(&field_from_robot, &place), Walk::STILL);
-            assert!((field_from_robot.translation.vector - place.translation.vector).norm() < 0.07);
+            assert_eq!(guard.walk(&field_from_robot, &wanted), Walk::STILL);
+            assert!((field_from_robot.translation.vector - wanted.translation.vector).norm() < 0.07);
         }
     }
 }

@@ -21,13 +21,13 @@ pub fn crossing(position: Point2<f64>, velocity: Vector2<f64>, deceleration: f64
     if position.x <= 0.0 || velocity.x >= 0.0 {
         return None;
     }
-    let way = position.x * speed / -velocity.x;
-    let root = speed * speed - 2.0 * deceleration * way;
+    let distance = position.x * speed / -velocity.x;
+    let root = speed * speed - 2.0 * deceleration * distance;
     if root < 0.0 {
         return None;
     }
     // The smaller root, in a form that also holds without friction.
-    let time = 2.0 * way / (speed + root.sqrt());
+    let time = 2.0 * distance / (speed + root.sqrt());
     let y = position.y + velocity.y * position.x / -velocity.x;
     (time.is_finite() && y.is_finite()).then_some(Crossing { time, y })
 }
@@ -42,7 +42,7 @@ const SEARCH_INTERVAL: f64 = 0.1;
 /// before. A ball that hardly rolls is met at its position.
 ///
 /// The ball rolls straight and decelerates by `deceleration` m/s².
-pub fn meeting_place(
+pub fn meeting_point(
     position: Point2<f64>,
     velocity: Vector2<f64>,
     deceleration: f64,
@@ -82,11 +82,11 @@ mod tests {
 
     #[test]
     fn a_ball_is_met_where_robot_and_ball_come_at_the_same_time_or_where_it_stops() {
-        let met = |velocity, foresight| meeting_place(Point2::new(2.0, -2.0), velocity, 0.0, 1.0, foresight);
+        let met = |velocity, foresight| meeting_point(Point2::new(2.0, -2.0), velocity, 0.0, 1.0, foresight);
         assert!((met(Vector2::new(0.0, 1.0), 9.0) - Point2::new(2.0, 0.0)).norm() < 0.11, "after 2 s");
         assert_eq!(met(Vector2::new(0.0, 1.0), 1.0), Point2::new(2.0, -1.0), "it looks no farther ahead");
         assert_eq!(met(Vector2::new(0.0, 0.2), 9.0), Point2::new(2.0, -2.0), "it hardly rolls");
-        let stopped = meeting_place(Point2::new(1.0, 0.0), Vector2::new(1.0, 0.0), 0.5, 0.1, 9.0);
+        let stopped = meeting_point(Point2::new(1.0, 0.0), Vector2::new(1.0, 0.0), 0.5, 0.1, 9.0);
         assert!((stopped - Point2::new(2.0, 0.0)).norm() < 1e-9, "v²/2a from where it is: {stopped}");
     }
 

@@ -35,21 +35,21 @@ const ARRIVAL_DISTANCE: f64 = 0.4;
 
 /// The place of a player for a kick-off: in the own half, facing the centre, and outside the centre
 /// circle unless it kicks off, which the field player with the lowest number does.
-pub fn kick_off_place(field: &FieldModel, number: u32, kicks_off: bool) -> Isometry2<f64> {
+pub fn kick_off_pose(field: &FieldModel, number: u32, kicks_off: bool) -> Isometry2<f64> {
     let outside = field.circle_radius + LINE_CLEARANCE;
     let own_goal = field.goal(Goal::Own);
-    let place = match number {
+    let position = match number {
         GOALKEEPER_NUMBER => Point2::new(own_goal.x + BEFORE_LINE, 0.0),
         2 if kicks_off => Point2::new(-BEFORE_BALL, 0.0),
         2 => Point2::new(-outside, 0.0),
         _ => {
             let (x, y) = PLACES[(number.max(3) - 3) as usize % PLACES.len()];
             let x = (-x * field.length / 2.0).max(field.area_front() + LINE_CLEARANCE);
-            let place = Point2::new(x, y * field.width / 2.0);
-            place * (outside / place.coords.norm()).max(1.0)
+            let position = Point2::new(x, y * field.width / 2.0);
+            position * (outside / position.coords.norm()).max(1.0)
         }
     };
-    pose(place.x, place.y, angle_of(&-place.coords))
+    pose(position.x, position.y, angle_of(&-position.coords))
 }
 
 /// A walk to the place for a kick-off. A robot that does not know its pose turns once around to
@@ -67,7 +67,7 @@ impl KickOffWalk {
         &mut self,
         now: Timestamp,
         pose: Option<(Isometry2<f64>, f64)>,
-        field_from_place: &Isometry2<f64>,
+        field_from_target: &Isometry2<f64>,
         robots: &[Point2<f64>],
     ) -> Walk {
         if now.since(self.called_at) > CALL_TIMEOUT {
@@ -76,7 +76,7 @@ impl KickOffWalk {
         self.called_at = now;
         match pose {
             Some((field_from_robot, confidence)) if confidence > MIN_CONFIDENCE => {
-                walk_to_kick_off(&field_from_robot, field_from_place, robots)
+                walk_to_kick_off(&field_from_robot, field_from_target, robots)
             }
             _ if now.since(self.began_at) < LOOK_TIME => Walk::turning(LOOK_AROUND),
             _ => Walk::STILL,
@@ -86,22 +86,22 @@ impl KickOffWalk {
 
 fn walk_to_kick_off(
     field_from_robot: &Isometry2<f64>,
-    field_from_place: &Isometry2<f64>,
+    field_from_target: &Isometry2<f64>,
     robots: &[Point2<f64>],
 ) -> Walk {
-    let robot_from_place = field_from_robot.inverse() * field_from_place;
-    let place = Point2::from(robot_from_place.translation.vector);
-    let (way, off) = (place.coords.norm(), wrap(heading(&robot_from_place)));
-    if way <= POSE_TOLERANCE.0 {
+    let robot_from_target = field_from_robot.inverse() * field_from_target;
+    let position = Point2::from(robot_from_target.translation.vector);
+    let (distance, off) = (position.coords.norm(), wrap(heading(&robot_from_target)));
+    if distance <= POSE_TOLERANCE.0 {
         return if off.abs() <= POSE_TOLERANCE.1 { Walk::STILL } else { walk_to(Point2::origin(), 0.0, off) };
     }
-    if way < ARRIVAL_DISTANCE {
-        return walk_to(place, way, off);
+    if distance < ARRIVAL_DISTANCE {
+        return walk_to(position, distance, off);
     }
     let ball = field_from_robot.inverse_transform_point(&Point2::origin());
     let mut obstacles = robots.to_vec();
     obstacles.push(ball);
-    stride_to(avoid(place, &obstacles), way)
+    stride_to(avoid(position, &obstacles), distance)
 }
 
 #[cfg(test)]
@@ -114,14 +114,14 @@ mod tests {
     #[test]
     fn places_are_legal_and_apart() {
         for kicks_off in [false, true] {
-            let places: Vec<_> = (1..=7).map(|number| kick_off_place(&FIELD, number, kicks_off)).collect();
-            for (index, place) in places.iter().enumerate() {
-                let at = Point2::from(place.translation.vector);
+            let poses: Vec<_> = (1..=7).map(|number| kick_off_pose(&FIELD, number, kicks_off)).collect();
+            for (index, wanted) in poses.iter().enumerate() {
+                let at = Point2::from(wanted.translation.vector);
                 assert!(at.x < -0.2 && at.x > -3.0 && at.y.abs() < 2.0, "{at}");
                 assert!(index == 0 || !FIELD.in_own_area(at, 0.15), "{at}");
                 assert!(at.coords.norm() > 0.75 || (kicks_off && index == 1), "{at}");
-                for other in &places[..index] {
-                    assert!((other.translation.vector - place.translation.vector).norm() > 0.4);
+                for other in &poses[..index] {
+                    assert!((other.translation.vector - wanted.translation.vector).norm() > 0.4);
                 }
             }
         }
@@ -143,14 +143,14 @@ mod tests {
     #[test]
     fn a_robot_comes_to_its_place_from_everywhere_and_stands() {
         let gait = GaitLimits { forward: 0.3, backward: 0.15, sideways: 0.15, turn: 1.2 };
-        let place = kick_off_place(&FIELD, 2, true);
+        let wanted = kick_off_pose(&FIELD, 2, true);
         for start in [pose(2.5, 0.05, 0.0), pose(-2.9, 1.9, -1.5), pose(0.5, 0.0, 3.0), pose(-0.3, 0.1, 3.0)]
         {
             let mut robot = start;
             let mut nearest_ball = f64::INFINITY;
             let mut time = 0.0;
-            while walk_to_kick_off(&robot, &place, &[]) != Walk::STILL {
-                let walk = gait.limit(&walk_to_kick_off(&robot, &place, &[]));
+            while walk_to_kick_off(&robot, &wanted, &[]) != Walk::STILL {
+                let walk = gait.limit(&walk_to_kick_off(&robot, &wanted, &[]));
                 robot *= pose(walk.ahead * 0.1, walk.left * 0.1, walk.turn * 0.1);
                 nearest_ball = nearest_ball.min(robot.translation.vector.norm());
                 time += 0.1;

@@ -55,14 +55,14 @@ const MOST_PLACES: usize = 8;
 /// The places in the field at which a landmark can be.
 #[derive(Clone, Copy, Debug)]
 pub struct LandmarkPlaces {
-    places: [Point2<f64>; MOST_PLACES],
+    positions: [Point2<f64>; MOST_PLACES],
     count: usize,
 }
 
 impl LandmarkPlaces {
     /// The places of a landmark on a field.
     pub fn new(landmark: Landmark, field: &FieldModel) -> LandmarkPlaces {
-        let mut all = LandmarkPlaces { places: [Point2::origin(); MOST_PLACES], count: 0 };
+        let mut all = LandmarkPlaces { positions: [Point2::origin(); MOST_PLACES], count: 0 };
         let (end, side) = (field.length / 2.0, field.width / 2.0);
         let (front, beside) = (end - field.area_depth, field.area_width / 2.0);
         match landmark {
@@ -87,7 +87,7 @@ impl LandmarkPlaces {
 
     /// The places.
     pub fn as_slice(&self) -> &[Point2<f64>] {
-        &self.places[..self.count]
+        &self.positions[..self.count]
     }
 
     fn add_posts(&mut self, field: &FieldModel, goal: Goal, post: GoalPost) {
@@ -100,8 +100,8 @@ impl LandmarkPlaces {
         }
     }
 
-    fn add(&mut self, place: Point2<f64>) {
-        self.places[self.count] = place;
+    fn add(&mut self, position: Point2<f64>) {
+        self.positions[self.count] = position;
         self.count += 1;
     }
 

@@ -84,10 +84,10 @@ impl Localisation {
         self.anchors.iter_mut().for_each(|anchor| *anchor *= old_from_new);
     }
 
-    /// Adds uncertainty of `place` metres and `turn` radians (standard deviations), as after a
+    /// Adds uncertainty of `position` metres and `turn` radians (standard deviations), as after a
     /// fall.
-    pub fn disturb(&mut self, place: f64, turn: f64) {
-        self.hypotheses.iter_mut().for_each(|it| it.filter.disturb(place, turn));
+    pub fn disturb(&mut self, position: f64, turn: f64) {
+        self.hypotheses.iter_mut().for_each(|it| it.filter.disturb(position, turn));
     }
 
     /// Corrects the pose with the landmarks of one image.
@@ -135,17 +135,17 @@ impl Localisation {
     /// if unknown; less while other hypotheses have weight, and while landmarks do not match.
     pub fn confidence(&self) -> f64 {
         self.hypotheses.first().map_or(0.0, |best| {
-            best.weight * best.filter.trust() / (1.0 + best.filter.place_variance() / 0.25)
+            best.weight * best.filter.trust() / (1.0 + best.filter.position_variance() / 0.25)
         })
     }
 
     /// The distance of a pose from the nearest anchor: the sum of metres and radians.
-    fn way_to(&self, pose: &Isometry2<f64>) -> f64 {
-        let way = |known: &Isometry2<f64>| {
-            let place = known.translation.vector - pose.translation.vector;
-            place.norm() + wrap(heading(known) - heading(pose)).abs()
+    fn distance_to_anchor(&self, pose: &Isometry2<f64>) -> f64 {
+        let distance = |known: &Isometry2<f64>| {
+            let position = known.translation.vector - pose.translation.vector;
+            position.norm() + wrap(heading(known) - heading(pose)).abs()
         };
-        self.anchors.iter().map(way).fold(f64::INFINITY, f64::min)
+        self.anchors.iter().map(distance).fold(f64::INFINITY, f64::min)
     }
 
     fn normalise(&mut self) {
@@ -206,20 +206,21 @@ impl Localisation {
                 let turn = rotation(angle_of(&between) - angle_of(&apart));
                 let middle_seen = nalgebra::center(&seen_one, &seen_other);
                 let middle = nalgebra::center(at_one, at_other);
-                let place = middle - turn * middle_seen.coords;
-                self.propose(field, Isometry2::from_parts(place.coords.into(), turn), distance);
+                let position = middle - turn * middle_seen.coords;
+                self.propose(field, Isometry2::from_parts(position.coords.into(), turn), distance);
             }
         }
     }
 
     /// Adds a hypothesis, unless one explains it or it is off the carpet.
     fn propose(&mut self, field: &FieldModel, pose: Isometry2<f64>, distance: f64) {
-        let place = pose.translation.vector;
-        let is_on_carpet = place.x.abs() < field.length / 2.0 + CARPET_BORDER
-            && place.y.abs() < field.width / 2.0 + CARPET_BORDER;
+        let position = pose.translation.vector;
+        let is_on_carpet = position.x.abs() < field.length / 2.0 + CARPET_BORDER
+            && position.y.abs() < field.width / 2.0 + CARPET_BORDER;
         let near = (EXPLAINED_DIFFERENCE.0 + EXPLAINED_DIFFERENCE.1 * distance, EXPLAINED_DIFFERENCE.2);
         let is_known = self.hypotheses.iter().any(|it| is_near(&it.filter, &pose, near));
-        let is_turned = self.do_goals_look_alike && self.way_to(&turned(&pose)) < self.way_to(&pose);
+        let is_turned = self.do_goals_look_alike
+            && self.distance_to_anchor(&turned(&pose)) < self.distance_to_anchor(&pose);
         // One more than the most has room: `prune` drops the lightest.
         if !is_on_carpet || is_known || is_turned || self.hypotheses.len() > MAX_HYPOTHESES {
             return;
@@ -249,10 +250,10 @@ fn are_posts_of_one_goal(one: &LandmarkSighting, other: &LandmarkSighting) -> bo
     }
 }
 
-fn is_near(filter: &PoseFilter, pose: &Isometry2<f64>, (place, turn): (f64, f64)) -> bool {
+fn is_near(filter: &PoseFilter, pose: &Isometry2<f64>, (position, turn): (f64, f64)) -> bool {
     let known = filter.field_from_robot();
     let off = (Point2::from(known.translation.vector) - Point2::from(pose.translation.vector)).norm();
-    off < place && wrap(heading(known) - heading(pose)).abs() < turn
+    off < position && wrap(heading(known) - heading(pose)).abs() < turn
 }
 
 #[cfg(test)]
@@ -277,12 +278,12 @@ mod tests {
         Localisation::new(LocalisationModel::default(), starts)
     }
 
-    fn seen_at(truth: &Isometry2<f64>, landmark: Landmark, place: Point2<f64>) -> LandmarkSighting {
-        let place = truth.inverse_transform_point(&place);
+    fn seen_at(truth: &Isometry2<f64>, landmark: Landmark, position: Point2<f64>) -> LandmarkSighting {
+        let position = truth.inverse_transform_point(&position);
         LandmarkSighting {
             landmark,
-            distance: libm::hypot(place.x, place.y),
-            bearing: libm::atan2(place.y, place.x),
+            distance: libm::hypot(position.x, position.y),
+            bearing: libm::atan2(position.y, position.x),
         }
     }
 

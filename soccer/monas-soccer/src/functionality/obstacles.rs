@@ -183,10 +183,10 @@ mod tests {
     }
 
     /// Whether opponents stand, one of which is seen for 20 s ten times a second.
-    fn stands(place: impl Fn(f64) -> (f64, f64), is_evidence: bool) -> bool {
+    fn stands(position: impl Fn(f64) -> (f64, f64), is_evidence: bool) -> bool {
         let mut obstacles = Obstacles::default();
         for picture in 0..200_u32 {
-            let (x, y) = place(f64::from(picture) * 0.1);
+            let (x, y) = position(f64::from(picture) * 0.1);
             let sighting = Obstacle { is_evidence, ..robot(x, y, false, u64::from(picture) * 100) };
             obstacles.see([sighting].into_iter());
         }
@@ -215,7 +215,7 @@ mod tests {
     #[test]
     fn the_memory_is_bounded() {
         let mut obstacles = Obstacles::default();
-        let robots: Vec<_> = (0..100).map(|place| robot(f64::from(place), 0.0, false, 0)).collect();
+        let robots: Vec<_> = (0..100).map(|position| robot(f64::from(position), 0.0, false, 0)).collect();
         show_twice(&mut obstacles, &robots);
         assert_eq!(obstacles.iter().count(), MAX_ROBOTS);
     }

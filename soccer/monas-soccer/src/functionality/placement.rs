@@ -115,8 +115,8 @@ mod tests {
     fn the_places_are_on_or_beside_the_own_half() {
         let field = FieldModel::LEAGUE_2010;
         for estimate in Placement::OwnHalf.poses(&field) {
-            let place = estimate.field_from_robot.translation.vector;
-            assert!((-3.0..0.0).contains(&place.x) && place.y.abs() <= 2.0, "{place:?}");
+            let position = estimate.field_from_robot.translation.vector;
+            assert!((-3.0..0.0).contains(&position.x) && position.y.abs() <= 2.0, "{position:?}");
         }
         assert_eq!(Placement::HalfwayLine.poses(&field).len(), 2);
     }

@@ -97,11 +97,11 @@ const PROCESS_NOISE: (f64, f64) = (0.01, 0.005);
 
 impl PoseFilter {
     pub(super) fn new(start: &PoseEstimate) -> PoseFilter {
-        let place = start.place_deviation * start.place_deviation;
+        let position = start.place_deviation * start.place_deviation;
         let turn = start.turn_deviation * start.turn_deviation;
         PoseFilter {
             field_from_robot: start.field_from_robot,
-            covariance: Matrix3::from_diagonal(&Vector3::new(place, place, turn)),
+            covariance: Matrix3::from_diagonal(&Vector3::new(position, position, turn)),
             misfits: 0,
         }
     }
@@ -117,7 +117,7 @@ impl PoseFilter {
     }
 
     /// The variance of the position, square metres.
-    pub(super) fn place_variance(&self) -> f64 {
+    pub(super) fn position_variance(&self) -> f64 {
         (self.covariance[(0, 0)] + self.covariance[(1, 1)]).max(0.0)
     }
 
@@ -130,17 +130,18 @@ impl PoseFilter {
             0.0, 1.0, step.x,
             0.0, 0.0, 1.0,
         );
-        let (way, turned) = (step.norm(), heading(old_from_new).abs());
-        let place = model.drift * model.drift * way;
-        let turn = model.turn_drift * model.turn_drift * (turned + way);
+        let (distance, turned) = (step.norm(), heading(old_from_new).abs());
+        let position = model.drift * model.drift * distance;
+        let turn = model.turn_drift * model.turn_drift * (turned + distance);
         self.covariance = jacobian * self.covariance * jacobian.transpose();
-        self.covariance += Matrix3::from_diagonal(&Vector3::new(place, place, turn));
+        self.covariance += Matrix3::from_diagonal(&Vector3::new(position, position, turn));
         self.field_from_robot *= old_from_new;
     }
 
-    /// Adds uncertainty of `place` metres and `turn` radians (standard deviations).
-    pub(super) fn disturb(&mut self, place: f64, turn: f64) {
-        self.covariance += Matrix3::from_diagonal(&Vector3::new(place * place, place * place, turn * turn));
+    /// Adds uncertainty of `position` metres and `turn` radians (standard deviations).
+    pub(super) fn disturb(&mut self, position: f64, turn: f64) {
+        self.covariance +=
+            Matrix3::from_diagonal(&Vector3::new(position * position, position * position, turn * turn));
         self.covariance[(2, 2)] = self.covariance[(2, 2)].min(PI * PI);
     }
 
@@ -154,8 +155,8 @@ impl PoseFilter {
         seen: &LandmarkSighting,
     ) -> f64 {
         self.disturb(PROCESS_NOISE.0, PROCESS_NOISE.1);
-        let places = LandmarkPlaces::new(seen.landmark, field);
-        let matches = places.as_slice().iter().filter_map(|place| self.fit(model, *place, seen));
+        let positions = LandmarkPlaces::new(seen.landmark, field);
+        let matches = positions.as_slice().iter().filter_map(|position| self.fit(model, *position, seen));
         let must_be_unique = !matches!(seen.landmark, Landmark::Post(..));
         match best_match(matches) {
             Some((fit, next)) => {
@@ -194,10 +195,10 @@ impl PoseFilter {
     fn fit(
         &self,
         model: &LocalisationModel,
-        place: Point2<f64>,
+        position: Point2<f64>,
         seen: &LandmarkSighting,
     ) -> Option<LandmarkMatch> {
-        let offset = place - Point2::from(self.field_from_robot.translation.vector);
+        let offset = position - Point2::from(self.field_from_robot.translation.vector);
         let distance = offset.norm();
         if distance < 0.05 {
             return None;
@@ -238,9 +239,9 @@ impl PoseFilter {
         // A league may have no centre circle or no goal area.
         let direction = line.along().try_normalize(1e-6)?;
         let normal = Vector2::new(-direction.y, direction.x);
-        let place = direction.dot(&(at - line.ends[0]));
+        let position = direction.dot(&(at - line.ends[0]));
         let half = length / 2.0 - MAX_OVERSHOOT;
-        if place < half || place > line.along().norm() - half {
+        if position < half || position > line.along().norm() - half {
             return None;
         }
         // The direction of a line is known up to half a turn.
@@ -276,9 +277,9 @@ impl PoseFilter {
 
     fn apply(&mut self, fit: &LandmarkMatch) {
         let change = fit.gain * fit.innovation;
-        let place = self.field_from_robot.translation.vector + change.fixed_rows::<2>(0);
+        let position = self.field_from_robot.translation.vector + change.fixed_rows::<2>(0);
         let turned = heading(&self.field_from_robot) + change.z;
-        self.field_from_robot = pose(place.x, place.y, turned);
+        self.field_from_robot = pose(position.x, position.y, turned);
         let covariance = (Matrix3::identity() - fit.gain * fit.jacobian) * self.covariance;
         self.covariance = (covariance + covariance.transpose()) / 2.0;
         self.misfits = 0;

@@ -69,14 +69,14 @@ const FULL_SPEED: f64 = 0.5;
 /// Gain from heading error to angular velocity, 1/s.
 const TURN_GAIN: f64 = 2.0;
 
-/// A straight walk to a position, given in the robot's frame, while turning to `facing`; `way` is
-/// the length of the remaining path in metres.
+/// A straight walk to a position, given in the robot's frame, while turning to `facing`; `distance`
+/// is the length of the remaining path in metres.
 ///
 /// The walk slows down towards the end of the path, and while the heading error is large.
-pub fn walk_to(place: Point2<f64>, way: f64, facing: f64) -> Walk {
+pub fn walk_to(position: Point2<f64>, distance: f64, facing: f64) -> Walk {
     let turned = (1.0 - facing.abs()).clamp(0.1, 1.0);
-    let speed = (APPROACH_GAIN * way).min(FULL_SPEED) * turned;
-    let direction = place.coords.try_normalize(1e-6).unwrap_or_default();
+    let speed = (APPROACH_GAIN * distance).min(FULL_SPEED) * turned;
+    let direction = position.coords.try_normalize(1e-6).unwrap_or_default();
     Walk::along(direction * speed, turn_to(facing))
 }
 
@@ -86,10 +86,10 @@ pub fn turn_to(bearing: f64) -> f64 {
 }
 
 /// A walk to a distant position in the robot's frame: turns towards it and walks forward.
-pub fn stride_to(place: Point2<f64>, way: f64) -> Walk {
-    let bearing = angle_of(&place.coords);
+pub fn stride_to(position: Point2<f64>, distance: f64) -> Walk {
+    let bearing = angle_of(&position.coords);
     let ahead = libm::cos(bearing).max(0.0);
-    let speed = (APPROACH_GAIN * way).min(FULL_SPEED) * ahead;
+    let speed = (APPROACH_GAIN * distance).min(FULL_SPEED) * ahead;
     Walk { ahead: speed * ahead, left: 0.0, turn: turn_to(bearing) }
 }
 

@@ -56,11 +56,11 @@ fn in_ready_it_walks_to_its_place_and_stands_there() {
     world.lock().phase = GamePhase::Ready;
     let mut simulation = world.play("attacker.xml");
     world.until(&mut simulation, 20.0, |_| false);
-    let place = world.lock().field_from_robot;
+    let position = world.lock().field_from_robot;
     // outside the centre circle: the others kick off
-    assert!((place.translation.vector - Vector2::new(-0.81, 0.0)).norm() < 0.15, "{place}");
+    assert!((position.translation.vector - Vector2::new(-0.81, 0.0)).norm() < 0.15, "{position}");
     world.until(&mut simulation, 21.0, |_| false);
-    assert_eq!(world.lock().field_from_robot, place);
+    assert_eq!(world.lock().field_from_robot, position);
 }
 
 #[test]

@@ -22,8 +22,8 @@ fn shoot(offset: f64) -> (Shared, Vec<Skill>, Option<f64>) {
     world.until(&mut simulation, 5.0, |_| false);
     let performed = world.lock().performed.clone();
     let back = world.until(&mut simulation, 25.0, |world| {
-        let place = world.field_from_robot.translation.vector;
-        world.posture == Posture::Standing && place.y.abs() < 0.7 && (-3.0..=-2.4).contains(&place.x)
+        let position = world.field_from_robot.translation.vector;
+        world.posture == Posture::Standing && position.y.abs() < 0.7 && (-3.0..=-2.4).contains(&position.x)
     });
     (world, performed, back)
 }

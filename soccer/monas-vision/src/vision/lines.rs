@@ -112,7 +112,7 @@ impl LineScan {
             let change = gradient(index);
             if change >= least {
                 // The steepest place of the rise.
-                if rise.is_none_or(|(place, steepest)| change > steepest || index > place + 3) {
+                if rise.is_none_or(|(position, steepest)| change > steepest || index > position + 3) {
                     rise = Some((index, change));
                 }
             } else if change <= -least

@@ -19,12 +19,12 @@ fn camera(turned: bool) -> Camera {
     let pose = HeadPose { height: 0.5, pitch: 0.1, yaw: 0.2, ..HeadPose::default() };
     let heading = if turned { std::f64::consts::PI } else { 0.0 };
     let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), heading);
-    let place = Vector3::new(if turned { -1.2 } else { 1.2 }, 0.0, 0.0);
+    let position = Vector3::new(if turned { -1.2 } else { 1.2 }, 0.0, 0.0);
     Camera::new(
         WIDTH,
         HEIGHT,
         0.8343,
-        &(Isometry3::from_parts(place.into(), turn) * pose.robot_from_camera()),
+        &(Isometry3::from_parts(position.into(), turn) * pose.robot_from_camera()),
     )
     .unwrap()
 }

@@ -304,7 +304,7 @@ fn r12_without_an_open_branch_a_choice_stops_the_chart_as_it_was_before() {
         "
         0.000 s start; enter c, START
         0.000 s -: START -> A; exit START; enter A
-        error: no way out of CHOICE `ch` is open
+        error: no outgoing transition of CHOICE `ch` is enabled
         ",
     );
 }

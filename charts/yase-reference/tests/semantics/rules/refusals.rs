@@ -49,7 +49,7 @@ fn r12_forks_that_do_not_lead_into_different_regions_are_refused() {
     );
     assert_eq!(
         with("    < f\n    A -> f : e\n    f -> B"),
-        "error[M04]: FORK `c/f` has less than two ways out"
+        "error[M04]: FORK `c/f` has fewer than two outgoing transitions"
     );
     assert_eq!(
         with("    < f\n    A -> f : e\n    f -> B : [true]\n    f -> D : g"),
@@ -57,7 +57,7 @@ fn r12_forks_that_do_not_lead_into_different_regions_are_refused() {
     );
     assert_eq!(
         with("    < f\n    A -> f : e\n    f -> B : [true]\n    f -> D"),
-        "error[M04]: a way out of FORK `c/f` has a guard (all ways out of a FORK are taken)"
+        "error[M04]: an outgoing transition of FORK `c/f` has a guard (all outgoing transitions of a FORK are taken)"
     );
 }
 
@@ -75,7 +75,7 @@ fn r12_joins_of_what_is_not_active_together_are_refused() {
     );
     assert_eq!(
         with("    > j\n    B -> j\n    D -> j\n    j -> A\n    j -> D"),
-        "error[M04]: JOIN `c/j` has not exactly one way out"
+        "error[M04]: JOIN `c/j` does not have exactly one outgoing transition"
     );
 }
 
@@ -102,7 +102,10 @@ fn r10_a_history_that_leads_out_of_its_composite_is_refused() {
 fn r12_a_choice_without_an_else_is_warned_of_and_stops_with_its_name() {
     let text = "START\nA | run | for=5ms\nB\n! ch\nc/START -> A\nA -> ch {interrupts} : e / A.n = 1\nch -> B : [A.n > 1]";
     let warnings: Vec<String> = chart(text).check().iter().map(ToString::to_string).collect();
-    assert_eq!(warnings, ["warning[M05]: every way out of `c/ch` has a guard: the chart may fail there"]);
+    assert_eq!(
+        warnings,
+        ["warning[M05]: every outgoing transition of `c/ch` has a guard: the chart may fail there"]
+    );
 
     let chart = chart(text);
     let mut machine = Machine::new(script::compile(&chart));
@@ -116,7 +119,7 @@ fn r12_a_choice_without_an_else_is_warned_of_and_stops_with_its_name() {
     let error = machine.run_to_completion(Timestamp::from_millis(9), &mut host).unwrap_err();
     assert_eq!(error.kind(), MachineErrorKind::NoBranch);
     assert_eq!(error.node().map(|node| machine.chart().short_path(node)).as_deref(), Some("ch"));
-    assert_eq!(error.to_string(), "no way out of CHOICE `ch` is open");
+    assert_eq!(error.to_string(), "no outgoing transition of CHOICE `ch` is enabled");
     assert_eq!((machine.status(), machine.configuration()), (Status::Stopped, before));
 }
 

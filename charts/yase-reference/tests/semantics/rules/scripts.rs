@@ -123,14 +123,14 @@ fn scripts_know_where_they_stand_and_what_is_active() {
         machine.chart().scripts().map(|script| (script.text, script.locations.to_vec())).collect();
     let a = reader.node("A");
     let action = |location, index| ScriptLocation::Action(location, index);
-    let (entry, way) = (ActionLocation::Entry(a), ActionLocation::Transition(TransitionId(1)));
+    let (entry, transition) = (ActionLocation::Entry(a), ActionLocation::Transition(TransitionId(1)));
     assert_eq!(
         scripts,
         [
-            ("look A", vec![action(way, 0), action(entry, 0)]),
+            ("look A", vec![action(transition, 0), action(entry, 0)]),
             ("raise f 7", vec![action(entry, 1)]),
             ("in A", vec![ScriptLocation::Guard(TransitionId(1))]),
-            ("raise g.h 8", vec![action(way, 1)]),
+            ("raise g.h 8", vec![action(transition, 1)]),
         ]
     );
     machine.start(Timestamp::ZERO, &mut reader);

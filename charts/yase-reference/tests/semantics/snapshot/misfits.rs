@@ -52,7 +52,7 @@ fn another_chart() {
 fn another_semantics_but_for_the_bound() {
     let other = yase::TimerScope::State;
     let wrong = found(|snapshot| snapshot.semantics.timers = other);
-    assert_eq!(wrong, "semantics: the chart is read in another way");
+    assert_eq!(wrong, "semantics: the chart has other semantics");
     let stage = Stage::new(CHART, &[]);
     let mut snapshot = stage.machine.snapshot();
     snapshot.semantics.limit = std::num::NonZeroU32::MIN;

@@ -158,7 +158,7 @@ fn a_chart_that_is_read_in_another_way() {
     semantics.timers = TimerScope::State;
     let other = compile_with(&yase_reference::chart(TWO), semantics);
     let plan = yase::migrate::plan(stage.machine.chart(), &other);
-    assert_eq!(stage.refusal(&plan), "the new chart is read in another way");
+    assert_eq!(stage.refusal(&plan), "the new chart has other semantics");
     let mut semantics = Semantics::yase();
     semantics.limit = NonZeroU32::MIN;
     let other = compile_with(&yase_reference::chart(TWO), semantics);

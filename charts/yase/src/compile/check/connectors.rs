@@ -38,19 +38,19 @@ impl ChartValidator<'_> {
     fn fork(&mut self, fork: NodeId, roles: &NodeRoles) {
         let outgoing = &roles.outgoing[fork.0 as usize];
         if outgoing.len() < 2 {
-            let message = format!("FORK `{}` has less than two ways out", self.path(fork));
+            let message = format!("FORK `{}` has fewer than two outgoing transitions", self.path(fork));
             self.error("M04", message);
         }
         if outgoing.iter().any(|&id| self.chart.transition(id).expression.guard.is_some()) {
-            let message = format!("a way out of FORK `{}` has a guard", self.path(fork));
-            self.error("M04", message).hint = Some("all ways out of a FORK are taken".into());
+            let message = format!("an outgoing transition of FORK `{}` has a guard", self.path(fork));
+            self.error("M04", message).hint = Some("all outgoing transitions of a FORK are taken".into());
         }
     }
 
     fn join(&mut self, join: NodeId, roles: &NodeRoles) {
         let chart = self.chart;
         if roles.outgoing[join.0 as usize].len() != 1 {
-            let message = format!("JOIN `{}` has not exactly one way out", self.path(join));
+            let message = format!("JOIN `{}` does not have exactly one outgoing transition", self.path(join));
             self.error("M04", message);
         }
         let incoming = &roles.incoming[join.0 as usize];
@@ -64,7 +64,7 @@ impl ChartValidator<'_> {
 
     /// Whether there are at least two states, each in a different region of one AND.
     fn can_join(&self, sources: &[NodeId]) -> bool {
-        let hulls = sources.iter().map(|&source| NodeSpan::of(self.layout.place_of(source)));
+        let hulls = sources.iter().map(|&source| NodeSpan::of(self.layout.index_of(source)));
         let Some(hull) = hulls.reduce(NodeSpan::with).filter(|_| sources.len() > 1) else { return false };
         let around = node_span::lowest_node(self.chart, self.layout, hull);
         let region = |&source: &NodeId| node_span::child_towards(self.chart, around, source);
@@ -160,8 +160,10 @@ impl ChartValidator<'_> {
             }
             if !is_sure {
                 let (code, then) = if is_start { ("M01", "stay there") } else { ("M05", "fail there") };
-                let message =
-                    format!("every way out of `{}` has a guard: the chart may {then}", self.path(id));
+                let message = format!(
+                    "every outgoing transition of `{}` has a guard: the chart may {then}",
+                    self.path(id)
+                );
                 self.report(Diagnostic::warning(code, Span::default(), message));
             }
         }

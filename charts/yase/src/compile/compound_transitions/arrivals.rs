@@ -33,7 +33,7 @@ impl CompoundPathSearch<'_> {
         let incoming = &self.roles.incoming[join.0 as usize];
         let sources: Vec<NodeId> = incoming.iter().map(|&id| self.chart.transition(id).source).collect();
         let hull =
-            sources.iter().map(|&node| NodeSpan::of(self.layout.place_of(node))).reduce(NodeSpan::with)?;
+            sources.iter().map(|&node| NodeSpan::of(self.layout.index_of(node))).reduce(NodeSpan::with)?;
         let around = node_span::lowest_node(self.chart, self.layout, hull);
         let region = |&node: &NodeId| node_span::child_towards(self.chart, around, node).unwrap_or(node);
         Some(JoinSources { around, regions: sources.iter().map(region).collect(), sources })
@@ -47,7 +47,7 @@ impl CompoundPathSearch<'_> {
         let regions: BTreeSet<NodeId> = sources.filter_map(|source| self.region_in(around, source)).collect();
         let joins = self.chart.node(around).kind == NodeKind::And && regions.len() > 1;
         let mut regions: Vec<NodeId> = regions.into_iter().collect();
-        regions.sort_by_key(|&region| self.layout.rank(self.layout.place_of(region)));
+        regions.sort_by_key(|&region| self.layout.rank(self.layout.index_of(region)));
         joins.then_some(JoinSources { around, regions, sources: Vec::new() })
     }
 
@@ -74,8 +74,8 @@ impl CompoundPathSearch<'_> {
             self.chart.node(target).kind != NodeKind::Join || self.semantics.join == JoinMode::Each;
         let join = *self.join_numbers.get(&target).filter(|_| is_only && by_itself)?;
         let region = self.region_in(self.joins[join].around, source)?;
-        let place = self.joins[join].regions.iter().position(|&other| other == region)?;
-        let slot = self.joins[..join].iter().map(|join| join.regions.len()).sum::<usize>() + place;
+        let index = self.joins[join].regions.iter().position(|&other| other == region)?;
+        let slot = self.joins[..join].iter().map(|join| join.regions.len()).sum::<usize>() + index;
         Some(PathArrival { join, slot, region, segment: trail.segments.len() - 1, passes: false })
     }
 

@@ -18,9 +18,9 @@ impl CompoundPathSearch<'_> {
     ) -> Option<(NodeId, ConfigurationChange)> {
         let stops = self.semantics.terminate == TerminateExit::Nothing
             && trail.ends.iter().all(|&end| self.leads_to_terminate(end));
-        let mut hull = NodeSpan::of(self.layout.place_of(source));
+        let mut hull = NodeSpan::of(self.layout.index_of(source));
         for &node in others {
-            hull = hull.with(NodeSpan::of(self.layout.place_of(node)));
+            hull = hull.with(NodeSpan::of(self.layout.index_of(node)));
         }
         for &end in &trail.ends {
             // only if there is no other end: this search can be long
@@ -31,7 +31,7 @@ impl CompoundPathSearch<'_> {
         }
         if let Some(arrival) = trail.arrival {
             let around = self.chart.node(arrival.region).parent.unwrap_or(arrival.region);
-            hull = hull.with(NodeSpan::of(self.layout.place_of(around)));
+            hull = hull.with(NodeSpan::of(self.layout.index_of(around)));
         }
         let is_inside = node_span::lowest_node(self.chart, self.layout, hull) == source;
         match (self.is_internal(source, trail), is_inside, self.semantics.structure) {
@@ -59,7 +59,7 @@ impl CompoundPathSearch<'_> {
     fn passed(&self, trail: &PartialPath) -> impl Iterator<Item = NodeSpan> {
         let targets = trail.segments.iter().map(|&id| self.chart.transition(id).target);
         let connectors = targets.filter(|&node| self.roles.of(node).is_connector());
-        connectors.map(|node| NodeSpan::of(self.layout.place_of(node)))
+        connectors.map(|node| NodeSpan::of(self.layout.index_of(node)))
     }
 
     /// In UML only the segment out of a state can be internal (local).
@@ -89,10 +89,10 @@ impl CompoundPathSearch<'_> {
             _ => target,
         };
         // a connector outside has it left
-        let place = self.layout.place_of(vacated);
+        let node = self.layout.index_of(vacated);
         let inside = |&id: &TransitionId| {
-            let passed = self.layout.place_of(self.chart.transition(id).target);
-            passed == self.layout.place_of(target) || self.layout.contains(place, passed)
+            let passed = self.layout.index_of(self.chart.transition(id).target);
+            passed == self.layout.index_of(target) || self.layout.contains(node, passed)
         };
         (!self.walks_segments() || trail.segments.iter().all(inside)).then_some(vacated)
     }
@@ -100,7 +100,7 @@ impl CompoundPathSearch<'_> {
     /// The span of all possible ends of a path behind a node, except a TERMINATE at which nothing
     /// is left, and of the connectors to which segments lead.
     pub(super) fn target_span(&mut self, end: NodeId) -> Option<NodeSpan> {
-        let own = NodeSpan::of(self.layout.place_of(end));
+        let own = NodeSpan::of(self.layout.index_of(end));
         match self.roles.of(end) {
             NodeRole::Terminate => (self.semantics.terminate == TerminateExit::Source).then_some(own),
             NodeRole::State | NodeRole::History => Some(own),
@@ -128,8 +128,8 @@ impl CompoundPathSearch<'_> {
     fn terminate_span(&self, end: NodeId) -> NodeSpan {
         let found =
             self.ends_behind(end).into_iter().filter(|&node| self.roles.of(node) == NodeRole::Terminate);
-        let spans = found.map(|node| NodeSpan::of(self.layout.place_of(node)));
-        spans.reduce(NodeSpan::with).unwrap_or(NodeSpan::of(self.layout.place_of(end)))
+        let spans = found.map(|node| NodeSpan::of(self.layout.index_of(node)));
+        spans.reduce(NodeSpan::with).unwrap_or(NodeSpan::of(self.layout.index_of(end)))
     }
 
     /// Whether a node leads to nothing but TERMINATEs.

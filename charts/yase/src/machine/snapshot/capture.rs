@@ -31,9 +31,9 @@ impl Machine {
     /// [restored](Machine::restore) machine must restore those that run or wait.
     pub fn activations(&self) -> impl Iterator<Item = (Activation, ActivityPhase)> {
         let activities = self.chart.activities.iter().enumerate();
-        activities.filter_map(|(activity, &place)| {
+        activities.filter_map(|(activity, &node)| {
             let slot = self.run.activities.slot(activity);
-            Some((self.run.activation(&self.chart, place, slot), phase(slot.phase)?))
+            Some((self.run.activation(&self.chart, node, slot), phase(slot.phase)?))
         })
     }
 }
@@ -72,7 +72,7 @@ impl Capture<'_> {
                 .regions_to_enter
                 .regions
                 .iter()
-                .map(|&place| self.paths.place(chart, place))
+                .map(|&index| self.paths.node_path(chart, index))
                 .collect(),
             to_inherit: run
                 .regions_to_enter
@@ -83,7 +83,7 @@ impl Capture<'_> {
             waiting_starts: self.nodes(&run.waiting_starts),
             vacated: self.nodes(&run.vacated),
             joined: self.joined(),
-            completions: run.completions.iter().map(|&place| self.paths.place(chart, place)).collect(),
+            completions: run.completions.iter().map(|&node| self.paths.node_path(chart, node)).collect(),
             ending: run.root_is_final,
             no_branch: run.failure.and_then(|fault| match fault {
                 StepError::NoBranch(node) => Some(self.paths.node(node).to_owned()),
@@ -108,7 +108,7 @@ impl Capture<'_> {
 
     fn nodes(&self, set: &BitSet) -> Vec<String> {
         let last = self.chart.layout.len();
-        members(set, last).map(|index| self.paths.place(self.chart, NodeIndex(index as u32))).collect()
+        members(set, last).map(|index| self.paths.node_path(self.chart, NodeIndex(index as u32))).collect()
     }
 
     fn regions(&self, set: &BitSet) -> Vec<String> {
@@ -122,7 +122,7 @@ impl Capture<'_> {
         // of several ways from one region, the first stands for all
         let mut seen = BTreeSet::new();
         let arrived = arriving.filter(|&(slot, _)| self.run.arrived.contains(slot) && seen.insert(slot));
-        arrived.map(|(_, id)| self.way(id)).collect()
+        arrived.map(|(_, id)| self.transition_path(id)).collect()
     }
 
     fn history(&self) -> Vec<HistoryRecord> {
@@ -130,8 +130,8 @@ impl Capture<'_> {
         records
             .filter(|(_, record)| record.is_known)
             .map(|(history, record)| HistoryRecord {
-                history: self.paths.place(self.chart, history.node),
-                nodes: record.nodes.iter().map(|&place| self.paths.place(self.chart, place)).collect(),
+                history: self.paths.node_path(self.chart, history.node),
+                nodes: record.nodes.iter().map(|&node| self.paths.node_path(self.chart, node)).collect(),
             })
             .collect()
     }
@@ -140,7 +140,7 @@ impl Capture<'_> {
         let set = self.run.timers.armed();
         set.map(|(timer, deadline)| {
             let timer = self.paths.timer(self.chart, timer);
-            let owner = deadline.owner.map(|place| self.paths.place(self.chart, place));
+            let owner = deadline.owner.map(|node| self.paths.node_path(self.chart, node));
             TimerRecord { timer, deadline: deadline.moment, expired: deadline.expired, owner }
         })
         .collect()
@@ -149,11 +149,11 @@ impl Capture<'_> {
     fn activities(&self) -> Vec<ActivityRecord> {
         let activities = self.chart.activities.iter().enumerate();
         activities
-            .filter_map(|(activity, &place)| {
+            .filter_map(|(activity, &index)| {
                 let slot = self.run.activities.slot(activity);
-                let node = self.chart.statechart().node(self.chart.layout.node(place));
+                let node = self.chart.statechart().node(self.chart.layout.node(index));
                 Some(ActivityRecord {
-                    state: self.paths.place(self.chart, place),
+                    state: self.paths.node_path(self.chart, index),
                     activity: node.activity.clone().unwrap_or_default(),
                     phase: phase(slot.phase)?,
                     number: slot.number,
@@ -182,14 +182,14 @@ impl Capture<'_> {
         event_name(self.chart, event)
     }
 
-    fn way(&self, compound: CompoundTransitionId) -> TransitionPath {
-        self.paths.way(self.chart, compound)
+    fn transition_path(&self, compound: CompoundTransitionId) -> TransitionPath {
+        self.paths.transition_path(self.chart, compound)
     }
 
     fn held(&self, held: &HeldEvent) -> HeldEventRecord {
         HeldEventRecord {
             occurrence: self.occurrence(&held.occurrence),
-            ways: held.compounds.iter().map(|&compound| self.way(compound)).collect(),
+            ways: held.compounds.iter().map(|&compound| self.transition_path(compound)).collect(),
             offer: held.offer,
         }
     }
@@ -198,7 +198,7 @@ impl Capture<'_> {
         let pending = self.run.pending.iter();
         pending
             .map(|pending| PendingInterruptRecord {
-                way: self.way(pending.compound),
+                way: self.transition_path(pending.compound),
                 event: pending.event.map(|event| self.event(event)),
             })
             .collect()
@@ -223,7 +223,7 @@ impl Capture<'_> {
             micro_steps: bound.micro_steps,
             instant: bound.instant,
             steps: bound.steps,
-            recent: bound.last().into_iter().map(|compound| self.way(compound)).collect(),
+            recent: bound.last().into_iter().map(|compound| self.transition_path(compound)).collect(),
         }
     }
 }

@@ -36,12 +36,12 @@ impl PathTable {
         self.by_path.get(path).copied()
     }
 
-    pub(crate) fn place(&self, chart: &CompiledChart, place: NodeIndex) -> String {
-        self.node(chart.layout.node(place)).to_owned()
+    pub(crate) fn node_path(&self, chart: &CompiledChart, node: NodeIndex) -> String {
+        self.node(chart.layout.node(node)).to_owned()
     }
 
-    pub(crate) fn find_place(&self, chart: &CompiledChart, path: &str) -> Option<NodeIndex> {
-        self.find_node(path).and_then(|node| chart.layout.place(node))
+    pub(crate) fn find_index(&self, chart: &CompiledChart, path: &str) -> Option<NodeIndex> {
+        self.find_node(path).and_then(|node| chart.layout.find_index(node))
     }
 
     pub(crate) fn region(&self, chart: &CompiledChart, region: ScopeId) -> String {
@@ -60,11 +60,15 @@ impl PathTable {
         self.by_segment.get(name).copied()
     }
 
-    pub(crate) fn way(&self, chart: &CompiledChart, compound: CompoundTransitionId) -> TransitionPath {
+    pub(crate) fn transition_path(
+        &self,
+        chart: &CompiledChart,
+        compound: CompoundTransitionId,
+    ) -> TransitionPath {
         chart.segments(compound).iter().map(|&segment| self.segment(segment).to_owned()).collect()
     }
 
-    pub(crate) fn find_way(
+    pub(crate) fn find_compound(
         &self,
         ways: &BTreeMap<&[TransitionId], CompoundTransitionId>,
         way: &TransitionPath,
@@ -105,7 +109,9 @@ pub(crate) fn find_event(chart: &CompiledChart, name: &EventName) -> Option<Even
 }
 
 /// Compound transitions by their segments.
-pub(crate) fn ways(chart: &CompiledChart) -> BTreeMap<&[TransitionId], CompoundTransitionId> {
+pub(crate) fn compounds_by_segments(
+    chart: &CompiledChart,
+) -> BTreeMap<&[TransitionId], CompoundTransitionId> {
     let ids = (0..chart.compounds.len() as u32).map(CompoundTransitionId);
     ids.map(|compound| (chart.segments(compound), compound)).collect()
 }
@@ -113,7 +119,7 @@ pub(crate) fn ways(chart: &CompiledChart) -> BTreeMap<&[TransitionId], CompoundT
 fn node_paths(chart: &CompiledChart) -> (Vec<String>, BTreeMap<String, NodeId>) {
     let (statechart, layout) = (chart.statechart(), &chart.layout);
     let mut order: Vec<NodeId> = statechart.nodes().map(|(id, _)| id).collect();
-    order.sort_by_key(|&node| layout.rank(layout.place_of(node)));
+    order.sort_by_key(|&node| layout.rank(layout.index_of(node)));
     let mut paths = vec![String::new(); order.len()];
     let mut by_path = BTreeMap::new();
     for node in order {

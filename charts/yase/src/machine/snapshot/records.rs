@@ -11,41 +11,41 @@ use crate::statechart::NodeKind;
 pub(crate) fn can_remember(
     chart: &CompiledChart,
     history: &HistoryNode,
-    places: &BTreeSet<NodeIndex>,
+    nodes: &BTreeSet<NodeIndex>,
 ) -> bool {
-    let states = places.iter().all(|&place| is_state(kind(chart, place)));
-    states && if history.is_deep { deep(chart, history, places) } else { shallow(chart, history, places) }
+    let states = nodes.iter().all(|&node| is_state(kind(chart, node)));
+    states && if history.is_deep { deep(chart, history, nodes) } else { shallow(chart, history, nodes) }
 }
 
-fn shallow(chart: &CompiledChart, history: &HistoryNode, places: &BTreeSet<NodeIndex>) -> bool {
+fn shallow(chart: &CompiledChart, history: &HistoryNode, nodes: &BTreeSet<NodeIndex>) -> bool {
     match kind(chart, history.owner) {
         NodeKind::Or => {
-            let is_child = |place: &NodeIndex| chart.states[place.index()].parent == Some(history.owner);
-            places.len() == 1 && places.iter().all(is_child)
+            let is_child = |node: &NodeIndex| chart.states[node.index()].parent == Some(history.owner);
+            nodes.len() == 1 && nodes.iter().all(is_child)
         }
-        _ => places.is_empty(),
+        _ => nodes.is_empty(),
     }
 }
 
-fn deep(chart: &CompiledChart, history: &HistoryNode, places: &BTreeSet<NodeIndex>) -> bool {
-    let is_there = |place: NodeIndex| place == history.owner || places.contains(&place);
-    let is_inside = |place: &NodeIndex| {
-        chart.states[place.index()].parent.is_some_and(is_there) && *place != history.owner
+fn deep(chart: &CompiledChart, history: &HistoryNode, nodes: &BTreeSet<NodeIndex>) -> bool {
+    let is_there = |node: NodeIndex| node == history.owner || nodes.contains(&node);
+    let is_inside = |index: &NodeIndex| {
+        chart.states[index.index()].parent.is_some_and(is_there) && *index != history.owner
     };
-    let mut all = places.iter().chain(std::iter::once(&history.owner));
-    places.iter().all(is_inside) && all.all(|&place| is_filled(chart, place, is_there))
+    let mut all = nodes.iter().chain(std::iter::once(&history.owner));
+    nodes.iter().all(is_inside) && all.all(|&node| is_filled(chart, node, is_there))
 }
 
 /// Whether a node has the children that it must have.
-fn is_filled(chart: &CompiledChart, place: NodeIndex, is_there: impl Fn(NodeIndex) -> bool) -> bool {
+fn is_filled(chart: &CompiledChart, node: NodeIndex, is_there: impl Fn(NodeIndex) -> bool) -> bool {
     let layout = &chart.layout;
-    let children = chart.statechart().children(layout.node(place)).iter();
-    let children: Vec<NodeIndex> = children.map(|&child| layout.place_of(child)).collect();
+    let children = chart.statechart().children(layout.node(node)).iter();
+    let children: Vec<NodeIndex> = children.map(|&child| layout.index_of(child)).collect();
     let count = children.iter().filter(|&&child| is_there(child)).count();
-    match kind(chart, place) {
+    match kind(chart, node) {
         NodeKind::Or | NodeKind::And if count == 0 && can_be_vacated(chart) => true,
         NodeKind::Or => count == 1,
-        NodeKind::And => chart.states[place.index()].parts.iter().all(|&region| is_there(region)),
+        NodeKind::And => chart.states[node.index()].parts.iter().all(|&region| is_there(region)),
         _ => true,
     }
 }
@@ -64,6 +64,6 @@ fn is_state(kind: NodeKind) -> bool {
     matches!(kind, Or | And | Basic | Start | End)
 }
 
-fn kind(chart: &CompiledChart, place: NodeIndex) -> NodeKind {
-    chart.states[place.index()].kind
+fn kind(chart: &CompiledChart, node: NodeIndex) -> NodeKind {
+    chart.states[node.index()].kind
 }

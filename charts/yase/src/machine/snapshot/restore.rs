@@ -16,7 +16,8 @@ use crate::machine::machine_state::{FailedGuard, MachineState, PendingInterrupt}
 use crate::machine::queues::{HeldEvent, PoppedEvent};
 use crate::machine::snapshot::{
     ActivityPhase, ActivityRecord, EventName, HeldEventRecord, OccurrenceRecord, PathTable, RestoreError,
-    RestoreIssue, RestoreIssueKind, Snapshot, TimerName, TransitionPath, VERSION, find_event, validate, ways,
+    RestoreIssue, RestoreIssueKind, Snapshot, TimerName, TransitionPath, VERSION, compounds_by_segments,
+    find_event, validate,
 };
 use crate::machine::timers::ArmedTimer;
 use crate::semantics::Semantics;
@@ -45,8 +46,9 @@ pub(crate) struct SnapshotRestorer<'a> {
 
 impl<'a> SnapshotRestorer<'a> {
     fn new(chart: &'a CompiledChart) -> SnapshotRestorer<'a> {
-        let (run, paths, ways) = (MachineState::new(chart), PathTable::new(chart), ways(chart));
-        SnapshotRestorer { chart, run, issues: Vec::new(), paths, compounds: ways }
+        let (run, paths, compounds) =
+            (MachineState::new(chart), PathTable::new(chart), compounds_by_segments(chart));
+        SnapshotRestorer { chart, run, issues: Vec::new(), paths, compounds }
     }
 
     fn run(mut self, snapshot: &Snapshot) -> Result<MachineState, RestoreError> {
@@ -88,7 +90,7 @@ impl<'a> SnapshotRestorer<'a> {
         // the limit is configuration, not state
         let limit = self.chart.semantics().limit;
         if (Semantics { limit, ..snapshot.semantics }) != self.chart.semantics() {
-            self.report_issue(RestoreIssueKind::Semantics, "semantics", "the chart is read in another way");
+            self.report_issue(RestoreIssueKind::Semantics, "semantics", "the chart has other semantics");
         }
     }
 
@@ -102,15 +104,15 @@ impl<'a> SnapshotRestorer<'a> {
     fn states(&mut self, snapshot: &Snapshot) {
         for (index, path) in snapshot.configuration.iter().enumerate() {
             let field = format!("configuration[{index}]");
-            let Some(place) = self.place(&field, path) else { continue };
-            self.check_unique(self.run.active.contains(place.index()), &field, path);
-            self.run.activate(self.chart, place);
+            let Some(node) = self.node_index(&field, path) else { continue };
+            self.check_unique(self.run.active.contains(node.index()), &field, path);
+            self.run.activate(self.chart, node);
         }
         for (index, path) in snapshot.waiting_starts.iter().enumerate() {
             let field = format!("waiting_starts[{index}]");
-            let Some(place) = self.place(&field, path) else { continue };
-            self.check_unique(self.run.waiting_starts.contains(place.index()), &field, path);
-            self.run.waiting_starts.insert(place.index());
+            let Some(start) = self.node_index(&field, path) else { continue };
+            self.check_unique(self.run.waiting_starts.contains(start.index()), &field, path);
+            self.run.waiting_starts.insert(start.index());
         }
         for (index, path) in snapshot.written.iter().enumerate() {
             let field = format!("written[{index}]");
@@ -124,64 +126,64 @@ impl<'a> SnapshotRestorer<'a> {
     fn unfinished(&mut self, snapshot: &Snapshot) {
         for (index, path) in snapshot.vacated.iter().enumerate() {
             let field = format!("vacated[{index}]");
-            let Some(place) = self.place(&field, path) else { continue };
-            self.check_unique(self.run.vacated.contains(place.index()), &field, path);
-            self.run.vacated.insert(place.index());
-            self.run.active_leaves.insert(place.index());
+            let Some(node) = self.node_index(&field, path) else { continue };
+            self.check_unique(self.run.vacated.contains(node.index()), &field, path);
+            self.run.vacated.insert(node.index());
+            self.run.active_leaves.insert(node.index());
         }
-        for (index, way) in snapshot.joined.iter().enumerate() {
+        for (index, path) in snapshot.joined.iter().enumerate() {
             let field = format!("joined[{index}]");
-            let Some(compound) = self.way(&field, way) else { continue };
+            let Some(compound) = self.compound(&field, path) else { continue };
             let Some(slot) = self.chart.compounds[compound.0 as usize].arrives() else {
                 self.report_issue(
                     RestoreIssueKind::Unknown,
                     field,
-                    format!("`{}` leads to nothing that joins regions", way.join(", ")),
+                    format!("`{}` leads to nothing that joins regions", path.join(", ")),
                 );
                 continue;
             };
-            self.check_unique(self.run.arrived.contains(slot), &field, &way.join(", "));
+            self.check_unique(self.run.arrived.contains(slot), &field, &path.join(", "));
             self.run.arrived.insert(slot);
         }
         for (index, path) in snapshot.completions.iter().enumerate() {
-            if let Some(place) = self.place(&format!("completions[{index}]"), path) {
-                self.run.completions.push_back(place);
+            if let Some(node) = self.node_index(&format!("completions[{index}]"), path) {
+                self.run.completions.push_back(node);
             }
         }
         self.run.root_is_final = snapshot.ending;
         if let Some(path) = &snapshot.no_branch
-            && let Some(place) = self.place("no_branch", path)
+            && let Some(node) = self.node_index("no_branch", path)
         {
-            self.run.failure = Some(StepError::NoBranch(self.chart.layout.node(place)));
+            self.run.failure = Some(StepError::NoBranch(self.chart.layout.node(node)));
         }
     }
 
     fn history(&mut self, snapshot: &Snapshot) {
         for (index, record) in snapshot.history.iter().enumerate() {
             let field = format!("history[{index}]");
-            let Some(place) = self.place(&format!("{field}.history"), &record.history) else { continue };
+            let Some(owner) = self.node_index(&format!("{field}.history"), &record.history) else { continue };
             let histories = &self.chart.histories;
-            let Some(number) = histories.iter().position(|history| history.node == place) else {
+            let Some(number) = histories.iter().position(|history| history.node == owner) else {
                 let text = format!("`{}` is not a HISTORY", record.history);
                 self.report_issue(RestoreIssueKind::Unknown, format!("{field}.history"), text);
                 continue;
             };
             self.check_unique(self.run.records[number].is_known, &field, &record.history);
             let nodes = record.nodes.iter().enumerate();
-            let mut places: Vec<NodeIndex> = nodes
-                .filter_map(|(node, path)| self.place(&format!("{field}.nodes[{node}]"), path))
+            let mut indices: Vec<NodeIndex> = nodes
+                .filter_map(|(node, path)| self.node_index(&format!("{field}.nodes[{node}]"), path))
                 .collect();
-            places.sort_unstable();
-            self.run.records[number] = HistoryValue { is_known: true, nodes: places };
+            indices.sort_unstable();
+            self.run.records[number] = HistoryValue { is_known: true, nodes: indices };
         }
     }
 
     fn newcomers(&mut self, snapshot: &Snapshot) {
         for (index, path) in snapshot.to_enter.iter().enumerate() {
             let field = format!("to_enter[{index}]");
-            let Some(place) = self.place(&field, path) else { continue };
-            self.check_unique(self.run.is_to_enter(place), &field, path);
-            self.run.regions_to_enter.regions.push(place);
+            let Some(node) = self.node_index(&field, path) else { continue };
+            self.check_unique(self.run.is_to_enter(node), &field, path);
+            self.run.regions_to_enter.regions.push(node);
         }
         for (index, path) in snapshot.to_inherit.iter().enumerate() {
             let field = format!("to_inherit[{index}]");
@@ -199,9 +201,9 @@ impl<'a> SnapshotRestorer<'a> {
     }
 
     fn activity(&mut self, field: &str, record: &ActivityRecord) {
-        let Some(place) = self.place(&format!("{field}.state"), &record.state) else { return };
-        let node = self.chart.statechart().node(self.chart.layout.node(place));
-        let Some(activity) = self.chart.states[place.index()].activity else {
+        let Some(index) = self.node_index(&format!("{field}.state"), &record.state) else { return };
+        let node = self.chart.statechart().node(self.chart.layout.node(index));
+        let Some(activity) = self.chart.states[index.index()].activity else {
             let text = format!("`{}` has no activity", record.state);
             return self.report_issue(RestoreIssueKind::Unknown, format!("{field}.state"), text);
         };
@@ -220,7 +222,7 @@ impl<'a> SnapshotRestorer<'a> {
         self.run.activities.set(activity, state);
         self.run.activities.queued |= phase == InvocationPhase::Queued;
         if matches!(phase, InvocationPhase::Queued | InvocationPhase::Running) {
-            self.run.lock(self.chart, place);
+            self.run.lock(self.chart, index);
         }
     }
 
@@ -231,7 +233,7 @@ impl<'a> SnapshotRestorer<'a> {
             let name = format!("{}` of `{}", record.timer.name, record.timer.region);
             self.check_unique(self.run.timers.slot(timer).is_some(), &field, &name);
             let owner = match &record.owner {
-                Some(path) => self.place(&format!("timers[{index}].owner"), path),
+                Some(path) => self.node_index(&format!("timers[{index}].owner"), path),
                 None => None,
             };
             let armed = ArmedTimer { moment: record.deadline, expired: record.expired, owner };
@@ -273,9 +275,10 @@ impl<'a> SnapshotRestorer<'a> {
 
     fn held(&mut self, field: &str, record: &HeldEventRecord) {
         let occurrence = self.occurrence(&format!("{field}.occurrence"), &record.occurrence);
-        let ways = record.ways.iter().enumerate();
-        let compounds =
-            ways.filter_map(|(index, way)| self.way(&format!("{field}.ways[{index}]"), way)).collect();
+        let paths = record.ways.iter().enumerate();
+        let compounds = paths
+            .filter_map(|(index, path)| self.compound(&format!("{field}.ways[{index}]"), path))
+            .collect();
         if let Some(occurrence) = occurrence {
             self.run.queues.held.push(HeldEvent { occurrence, compounds, offer: record.offer });
         }
@@ -283,7 +286,7 @@ impl<'a> SnapshotRestorer<'a> {
 
     fn pending(&mut self, snapshot: &Snapshot) {
         for (index, record) in snapshot.pending.iter().enumerate() {
-            let compound = self.way(&format!("pending[{index}].way"), &record.way);
+            let compound = self.compound(&format!("pending[{index}].way"), &record.way);
             let event =
                 record.event.as_ref().map(|event| self.event(&format!("pending[{index}].event"), event));
             let event = match event {
@@ -326,8 +329,8 @@ impl<'a> SnapshotRestorer<'a> {
             let text = format!("at most {KEPT_TRANSITIONS} transitions are remembered");
             self.report_issue(RestoreIssueKind::Contradiction, "bound.recent", text);
         }
-        for (index, way) in record.recent.iter().enumerate() {
-            if let Some(compound) = self.way(&format!("bound.recent[{index}]"), way) {
+        for (index, path) in record.recent.iter().enumerate() {
+            if let Some(compound) = self.compound(&format!("bound.recent[{index}]"), path) {
                 self.run.livelock_limit.record_transition(compound);
             }
         }
@@ -346,8 +349,8 @@ impl<'a> SnapshotRestorer<'a> {
         found
     }
 
-    fn place(&mut self, field: &str, path: &str) -> Option<NodeIndex> {
-        let found = self.paths.find_place(self.chart, path);
+    fn node_index(&mut self, field: &str, path: &str) -> Option<NodeIndex> {
+        let found = self.paths.find_index(self.chart, path);
         self.known(found, field, "node", path)
     }
 
@@ -374,17 +377,17 @@ impl<'a> SnapshotRestorer<'a> {
         self.known(find_event(self.chart, event), field, what, name)
     }
 
-    fn way(&mut self, field: &str, way: &TransitionPath) -> Option<CompoundTransitionId> {
-        let found = self.paths.find_way(&self.compounds, way);
-        self.known(found, field, "compound transition", &way.join(", "))
+    fn compound(&mut self, field: &str, path: &TransitionPath) -> Option<CompoundTransitionId> {
+        let found = self.paths.find_compound(&self.compounds, path);
+        self.known(found, field, "compound transition", &path.join(", "))
     }
 
-    pub(crate) fn path(&self, place: NodeIndex) -> String {
-        self.paths.place(self.chart, place)
+    pub(crate) fn path(&self, node: NodeIndex) -> String {
+        self.paths.node_path(self.chart, node)
     }
 
-    pub(crate) fn kind(&self, place: NodeIndex) -> NodeKind {
-        self.chart.states[place.index()].kind
+    pub(crate) fn kind(&self, node: NodeIndex) -> NodeKind {
+        self.chart.states[node.index()].kind
     }
 }
 

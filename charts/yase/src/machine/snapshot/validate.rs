@@ -17,7 +17,7 @@ pub(crate) fn check(restoring: &mut SnapshotRestorer<'_>, snapshot: &Snapshot) {
     restoring.unfinished_is_of_active_nodes();
     restoring.joined_regions_are_vacated();
     restoring.records_are_configurations();
-    restoring.newcomers_have_a_place();
+    restoring.regions_to_enter_are_valid();
     restoring.starts_wait_where_they_are();
     restoring.activities_are_those_of_active_states(snapshot);
     restoring.occurrences_are_in_order(snapshot);
@@ -32,13 +32,13 @@ impl SnapshotRestorer<'_> {
         self.report_issue(RestoreIssueKind::Contradiction, field, text);
     }
 
-    fn is_active(&self, place: NodeIndex) -> bool {
-        self.run.is_active(place)
+    fn is_active(&self, node: NodeIndex) -> bool {
+        self.run.is_active(node)
     }
 
     fn active(&self) -> Vec<NodeIndex> {
-        let places = self.chart.layout.places();
-        places.filter(|&place| self.is_active(place)).collect()
+        let nodes = self.chart.layout.indices();
+        nodes.filter(|&node| self.is_active(node)).collect()
     }
 
     fn configuration_is_closed(&mut self) {
@@ -53,9 +53,9 @@ impl SnapshotRestorer<'_> {
         if !self.is_active(self.chart.layout.root()) {
             self.unclosed("the root is not active".into());
         }
-        for place in active {
-            self.parent_is_active(place);
-            self.children_fit(place);
+        for node in active {
+            self.parent_is_active(node);
+            self.children_fit(node);
         }
     }
 
@@ -63,30 +63,30 @@ impl SnapshotRestorer<'_> {
         self.report_issue(RestoreIssueKind::Configuration, "configuration", text);
     }
 
-    fn parent_is_active(&mut self, place: NodeIndex) {
-        let Some(parent) = self.chart.statechart().node(self.chart.layout.node(place)).parent else { return };
-        let parent = self.chart.layout.place_of(parent);
+    fn parent_is_active(&mut self, node: NodeIndex) {
+        let Some(parent) = self.chart.statechart().node(self.chart.layout.node(node)).parent else { return };
+        let parent = self.chart.layout.index_of(parent);
         if !self.is_active(parent) {
-            let (path, around) = (self.path(place), self.path(parent));
+            let (path, around) = (self.path(node), self.path(parent));
             self.unclosed(format!("`{path}` is active, but `{around}` around it is not"));
         }
     }
 
     /// TERMINATE stops a chart within a micro-step: the targets have not been entered.
-    fn children_fit(&mut self, place: NodeIndex) {
-        let is_and = self.kind(place) == NodeKind::And;
+    fn children_fit(&mut self, node: NodeIndex) {
+        let is_and = self.kind(node) == NodeKind::And;
         let is_there = |child: NodeIndex| self.is_active(child) || is_and && self.run.is_to_enter(child);
-        let may_be_empty = self.run.vacated.contains(place.index());
+        let may_be_empty = self.run.vacated.contains(node.index());
         let is_cut_short = self.run.status == Status::Stopped
-            && match self.kind(place) {
+            && match self.kind(node) {
                 NodeKind::And => true,
-                NodeKind::Or => !self.children(place).any(is_there),
+                NodeKind::Or => !self.children(node).any(is_there),
                 _ => false,
             };
         if is_cut_short {
             return;
         }
-        for text in self.holes(place, is_there, may_be_empty) {
+        for text in self.holes(node, is_there, may_be_empty) {
             self.unclosed(text);
         }
     }
@@ -94,14 +94,14 @@ impl SnapshotRestorer<'_> {
     /// The problems with the children of a node in a configuration.
     fn holes(
         &self,
-        place: NodeIndex,
+        node: NodeIndex,
         is_there: impl Fn(NodeIndex) -> bool,
         may_be_empty: bool,
     ) -> Vec<String> {
-        let path = self.path(place);
-        let children: Vec<NodeIndex> = self.children(place).collect();
+        let path = self.path(node);
+        let children: Vec<NodeIndex> = self.children(node).collect();
         let there = || children.iter().filter(|&&child| is_there(child));
-        match self.kind(place) {
+        match self.kind(node) {
             NodeKind::Or | NodeKind::And if may_be_empty => match there().next() {
                 Some(&child) => vec![format!("`{path}` was vacated, but `{}` is active", self.path(child))],
                 None => Vec::new(),
@@ -115,7 +115,7 @@ impl SnapshotRestorer<'_> {
                 }
             },
             NodeKind::And => {
-                let regions = self.chart.states[place.index()].parts.iter();
+                let regions = self.chart.states[node.index()].parts.iter();
                 let missing = regions.filter(|&&region| !is_there(region)).map(|&region| self.path(region));
                 missing
                     .map(|region| format!("`{path}` is active, but its region `{region}` is not"))
@@ -126,21 +126,20 @@ impl SnapshotRestorer<'_> {
         }
     }
 
-    fn children(&self, place: NodeIndex) -> impl Iterator<Item = NodeIndex> + use<'_> {
+    fn children(&self, node: NodeIndex) -> impl Iterator<Item = NodeIndex> + use<'_> {
         let layout = &self.chart.layout;
-        let children = self.chart.statechart().children(layout.node(place));
-        children.iter().map(|&child| layout.place_of(child))
+        let children = self.chart.statechart().children(layout.node(node));
+        children.iter().map(|&child| layout.index_of(child))
     }
 
     fn unfinished_is_of_active_nodes(&mut self) {
-        let places = self.chart.layout.places();
-        let vacated = places.filter(|place| self.run.vacated.contains(place.index()));
+        let nodes = self.chart.layout.indices();
+        let vacated = nodes.filter(|node| self.run.vacated.contains(node.index()));
         let completed = self.run.completions.iter().copied();
-        let rows =
-            vacated.map(|place| ("vacated", place)).chain(completed.map(|place| ("completions", place)));
-        let wrong: Vec<_> = rows.filter(|&(_, place)| !self.is_active(place)).collect();
-        for (field, place) in wrong {
-            let text = format!("`{}` is not active", self.path(place));
+        let rows = vacated.map(|index| ("vacated", index)).chain(completed.map(|node| ("completions", node)));
+        let wrong: Vec<_> = rows.filter(|&(_, node)| !self.is_active(node)).collect();
+        for (field, node) in wrong {
+            let text = format!("`{}` is not active", self.path(node));
             self.report_contradiction(field, text);
         }
     }
@@ -166,8 +165,8 @@ impl SnapshotRestorer<'_> {
     fn records_are_configurations(&mut self) {
         let chart = self.chart;
         for (history, record) in chart.histories.iter().zip(self.run.records.clone()) {
-            let places = record.nodes.into_iter().collect();
-            if record.is_known && !can_remember(chart, history, &places) {
+            let nodes = record.nodes.into_iter().collect();
+            if record.is_known && !can_remember(chart, history, &nodes) {
                 let path = self.path(history.node);
                 self.report_contradiction(
                     "history",
@@ -177,15 +176,15 @@ impl SnapshotRestorer<'_> {
         }
     }
 
-    fn newcomers_have_a_place(&mut self) {
+    fn regions_to_enter_are_valid(&mut self) {
         for index in 0..self.run.regions_to_enter.regions.len() {
-            let place = self.run.regions_to_enter.regions[index];
-            let path = self.path(place);
-            if !self.chart.regions.iter().any(|region| region.root == place) {
+            let node = self.run.regions_to_enter.regions[index];
+            let path = self.path(node);
+            if !self.chart.regions.iter().any(|region| region.root == node) {
                 self.report_contradiction("to_enter", format!("`{path}` is not a region"));
-            } else if self.is_active(place) {
+            } else if self.is_active(node) {
                 self.report_contradiction("to_enter", format!("`{path}` is active already"));
-            } else if !self.is_around_active(place) {
+            } else if !self.is_around_active(node) {
                 self.report_contradiction("to_enter", format!("the AND around `{path}` is not active"));
             }
         }
@@ -199,16 +198,16 @@ impl SnapshotRestorer<'_> {
         }
     }
 
-    fn is_around_active(&self, place: NodeIndex) -> bool {
-        let node = self.chart.statechart().node(self.chart.layout.node(place));
-        node.parent.is_some_and(|parent| self.is_active(self.chart.layout.place_of(parent)))
+    fn is_around_active(&self, index: NodeIndex) -> bool {
+        let node = self.chart.statechart().node(self.chart.layout.node(index));
+        node.parent.is_some_and(|parent| self.is_active(self.chart.layout.index_of(parent)))
     }
 
     fn starts_wait_where_they_are(&mut self) {
-        for place in self.chart.layout.places() {
-            let waits = self.run.waiting_starts.contains(place.index());
-            if waits && !(self.is_active(place) && self.kind(place) == NodeKind::Start) {
-                let text = format!("`{}` is not an active START", self.path(place));
+        for node in self.chart.layout.indices() {
+            let waits = self.run.waiting_starts.contains(node.index());
+            if waits && !(self.is_active(node) && self.kind(node) == NodeKind::Start) {
+                let text = format!("`{}` is not an active START", self.path(node));
                 self.report_contradiction("waiting_starts", text);
             }
         }
@@ -236,9 +235,9 @@ impl SnapshotRestorer<'_> {
     }
 
     fn active_states_have_their_activities(&mut self, snapshot: &Snapshot) {
-        for &place in &self.chart.activities {
-            let path = self.path(place);
-            if self.is_active(place) && snapshot.activity(&path).is_none() {
+        for &node in &self.chart.activities {
+            let path = self.path(node);
+            if self.is_active(node) && snapshot.activity(&path).is_none() {
                 self.report_contradiction(
                     "activities",
                     format!("`{path}` is active, and nothing is said of its activity"),
@@ -313,7 +312,7 @@ impl SnapshotRestorer<'_> {
     fn held_events_wait_for_something(&mut self) {
         for index in 0..self.run.queues.held.len() {
             let held = &self.run.queues.held[index];
-            let waits = held.offer || held.compounds.iter().any(|&compound| self.is_in_the_way(compound));
+            let waits = held.offer || held.compounds.iter().any(|&compound| self.is_blocked(compound));
             if !waits {
                 self.report_contradiction(
                     format!("held[{index}]"),
@@ -323,7 +322,7 @@ impl SnapshotRestorer<'_> {
         }
     }
 
-    fn is_in_the_way(&self, compound: CompoundTransitionId) -> bool {
+    fn is_blocked(&self, compound: CompoundTransitionId) -> bool {
         let compound = &self.chart.compounds[compound.0 as usize];
         let is_locked = |source: NodeIndex| {
             let region = self.chart.states[source.index()].region;

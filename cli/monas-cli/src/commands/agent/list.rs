@@ -99,13 +99,13 @@ fn describe(agent: &AgentEntry, console: &mut CommandOutput<'_>) -> Result<(), C
     Ok(())
 }
 
-fn activity((activity, place): (&ActivityEntry, usize)) -> [String; 9] {
+fn activity((activity, index): (&ActivityEntry, usize)) -> [String; 9] {
     let parameters: Vec<String> =
         activity.parameters.iter().map(|one| format!("{}={}", one.key, one.value)).collect();
     let times = activity.call_time.as_ref();
-    let place = if activity.state.is_empty() { place.to_string() } else { String::new() };
+    let order = if activity.state.is_empty() { index.to_string() } else { String::new() };
     [
-        place,
+        order,
         activity.name.clone(),
         parameters.join(" "),
         table::state_name(&activity.state),

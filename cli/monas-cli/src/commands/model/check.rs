@@ -136,7 +136,7 @@ fn text(
     for (path, report) in reports {
         for finding in &report.findings {
             report::write(console, Format::Text, std::slice::from_ref(&finding.diagnostic))?;
-            finding::way_there(finding, console)?;
+            finding::print_trace(finding, console)?;
         }
         if let Some(what) = report.kind.as_ref().filter(|_| has_summary && !report.has_errors()) {
             writeln!(

@@ -96,13 +96,13 @@ fn gather(
     let recording = Recording::open(tape).map_err(failed(format))?;
     let hosts = recorded_hosts(tape, &recording, format)?;
     // By host, agent and the number of the chart in the agent.
-    let mut places: Vec<(&str, &str, u32, usize)> = Vec::new();
+    let mut indices: Vec<(&str, &str, u32, usize)> = Vec::new();
     for host in &hosts {
         for agent in &host.agents {
             for (number, chart) in (0..).zip(agent.charts()) {
-                let place = ChartCounts::place_of(chart, charts);
-                charts[place].play(&host.name, agent.name());
-                places.push((&host.name, agent.name(), number, place));
+                let index = ChartCounts::chart_index(chart, charts);
+                charts[index].play(&host.name, agent.name());
+                indices.push((&host.name, agent.name(), number, index));
             }
         }
     }
@@ -116,11 +116,11 @@ fn gather(
         let is_it = |(host, agent, number, _): &&(&str, &str, u32, usize)| {
             *host == channel.host && *agent == channel.publisher && *number == record.chart
         };
-        let Some((.., place)) = places.iter().find(is_it) else {
+        let Some((.., position)) = indices.iter().find(is_it) else {
             unknown.insert(format!("`{}` on {}", channel.publisher, channel.host));
             continue;
         };
-        if !charts[*place].count(&record) {
+        if !charts[*position].count(&record) {
             let (host, agent) = (&channel.host, &channel.publisher);
             let message =
                 format!("{}: `{agent}` on {host} runs another chart than the tape's models", tape.display());
@@ -173,8 +173,8 @@ fn draw(charts: &[ChartCounts], folder: &Path, format: Format) -> Result<(), Com
         CommandFailure::Failed(format, format!("cannot {verb} {}: {error}", path.display()))
     };
     fs::create_dir_all(folder).map_err(|error| failed("make", folder, error))?;
-    for (place, covered) in charts.iter().enumerate() {
-        let namesakes = charts[..place].iter().filter(|other| other.chart.name == covered.chart.name).count();
+    for (index, covered) in charts.iter().enumerate() {
+        let namesakes = charts[..index].iter().filter(|other| other.chart.name == covered.chart.name).count();
         let number = if namesakes == 0 { String::new() } else { format!("-{}", namesakes + 1) };
         let path = folder.join(format!("{}{number}.svg", covered.chart.name.replace(['/', '\\'], "_")));
         monas_files::write(&path, to_svg_marked(&covered.chart, &marks(covered)))

@@ -8,7 +8,7 @@ use aseme_verify::{Finding, check::CheckReport};
 use monas_terminal::{CommandFailure, CommandOutput, Format, report};
 
 /// Prints the trace to a finding, if there is one.
-pub(crate) fn way_there(finding: &Finding, console: &mut CommandOutput<'_>) -> Result<(), CommandFailure> {
+pub(crate) fn print_trace(finding: &Finding, console: &mut CommandOutput<'_>) -> Result<(), CommandFailure> {
     if let Some(trace) = finding.trace.as_ref().filter(|_| finding.diagnostic.is_error() || !console.quiet) {
         writeln!(console.err, "  trace:\n{}", indented(trace))?;
     }

@@ -207,7 +207,7 @@ fn step_text(played: &StepResult<'_>, format: Format) -> String {
         Format::Text => {
             let records: String = played.records.iter().map(|record| format!("  {record}\n")).collect();
             let differences: String =
-                played.differences.iter().map(|it| format!("\n  {}: {it}", place(it))).collect();
+                played.differences.iter().map(|it| format!("\n  {}: {it}", file_and_line(it))).collect();
             format!("{cause}\n{records}  active: {}{differences}", played.active.join(", "))
         }
         Format::Json => {
@@ -219,7 +219,7 @@ fn step_text(played: &StepResult<'_>, format: Format) -> String {
 }
 
 /// `file:line`
-pub(crate) fn place(difference: &ScenarioDifference) -> String {
+pub(crate) fn file_and_line(difference: &ScenarioDifference) -> String {
     format!("{}:{}", difference.passage.source.name, difference.passage.line())
 }
 

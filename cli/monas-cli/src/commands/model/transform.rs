@@ -164,7 +164,7 @@ impl Transformation<'_, '_> {
     }
 
     fn unsupported(&self, model: &Model) -> CommandFailure {
-        let ways = match model {
+        let targets = match model {
             Model::Sag(_) => "suc",
             Model::Suc(_) => "aip and srm",
             Model::Aip(_) => "eac",
@@ -172,7 +172,7 @@ impl Transformation<'_, '_> {
             _ => "iac, with an EAC",
         };
         CommandFailure::Usage(format!(
-            "`{}` is a model of the kind {}; it can be transformed to {ways}",
+            "`{}` is a model of the kind {}; it can be transformed to {targets}",
             self.arguments.file.display(),
             model.kind()
         ))
@@ -219,7 +219,7 @@ impl Transformation<'_, '_> {
             let merged: Vec<_> =
                 charts.iter_mut().map(|chart| transformations::merge_eac(chart, &eac)).collect();
             // of several roles some take part in a protocol
-            let is_taken = merged.iter().any(|(places, _)| !places.is_empty());
+            let is_taken = merged.iter().any(|(composites, _)| !composites.is_empty());
             let found = merged.into_iter().flat_map(|(_, found)| found);
             findings.extend(found.filter(|finding| !(is_taken && finding.code == "E0837")));
         }

@@ -99,9 +99,9 @@ fn write_table(
         let channel = &message.channel;
         let mut row = vec![String::new(); columns.names.len()];
         value_text::cells(value, &mut |path, value| {
-            let place = columns.indices.get(&(channel.message_type().to_owned(), path.to_owned()));
-            if let Some(&place) = place {
-                row[place] = value_text::plain(value);
+            let index = columns.indices.get(&(channel.message_type().to_owned(), path.to_owned()));
+            if let Some(&position) = index {
+                row[position] = value_text::plain(value);
             }
         });
         let seconds = message.published.as_secs_f64().to_string();
@@ -131,7 +131,7 @@ impl Columns {
             let paths = types.entry(message.channel.message_type().to_owned()).or_default();
             let mut after = 0;
             value_text::cells(value, &mut |path, value| match paths.iter().position(|known| known == path) {
-                Some(place) => after = place + 1,
+                Some(index) => after = index + 1,
                 // An unset message has no fields and therefore no columns.
                 None if *value == Value::NoMessage => {}
                 None => {

@@ -73,11 +73,11 @@ const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz
 fn base64(bytes: &[u8]) -> String {
     let mut text = String::new();
     for group in bytes.chunks(3) {
-        let byte = |place| u32::from(group.get(place).copied().unwrap_or_default());
+        let byte = |index| u32::from(group.get(index).copied().unwrap_or_default());
         let bits = byte(0) << 16 | byte(1) << 8 | byte(2);
-        for place in 0..4 {
-            let digit = char::from(DIGITS[(bits >> (18 - 6 * place) & 63) as usize]);
-            text.push(if place <= group.len() { digit } else { '=' });
+        for position in 0..4 {
+            let digit = char::from(DIGITS[(bits >> (18 - 6 * position) & 63) as usize]);
+            text.push(if position <= group.len() { digit } else { '=' });
         }
     }
     text

@@ -149,14 +149,14 @@ fn changes(arguments: &WhatIfArguments, tape: &TapeRun) -> Result<Vec<PlannedCha
             match tape.transition(host, None, name) {
                 Ok((chart, transition)) => {
                     is_found = true;
-                    let place = charts.iter().position(|(known, _)| {
+                    let index = charts.iter().position(|(known, _)| {
                         (&known.host, &known.agent, known.chart) == (&chart.host, &chart.agent, chart.chart)
                     });
-                    let place = place.unwrap_or_else(|| {
+                    let position = index.unwrap_or_else(|| {
                         charts.push((chart.clone(), Vec::new()));
                         charts.len() - 1
                     });
-                    let (chart, texts) = &mut charts[place];
+                    let (chart, texts) = &mut charts[position];
                     chart.statechart.transition_mut(transition).expression.guard = Some(condition.clone());
                     texts.push(guard.clone());
                 }

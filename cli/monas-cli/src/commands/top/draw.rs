@@ -35,21 +35,21 @@ impl Screen {
     }
 
     pub(crate) fn select_next(&mut self) {
-        self.select(self.place() + 1);
+        self.select(self.selected_index() + 1);
     }
 
     pub(crate) fn select_previous(&mut self) {
-        self.select(self.place().saturating_sub(1));
+        self.select(self.selected_index().saturating_sub(1));
     }
 
-    fn select(&mut self, place: usize) {
+    fn select(&mut self, index: usize) {
         let agents = &self.figures.agents;
-        let agent = agents.get(place.min(agents.len().saturating_sub(1)));
+        let agent = agents.get(index.min(agents.len().saturating_sub(1)));
         self.selected = agent.map(|agent| (agent.entry.host.clone(), agent.entry.name.clone()));
     }
 
     /// The index of the selected agent; 0 if none is selected or it is gone.
-    fn place(&self) -> usize {
+    fn selected_index(&self) -> usize {
         let is_it = |agent: &AgentFigures| {
             self.selected
                 .as_ref()
@@ -95,12 +95,12 @@ impl Screen {
         let rows = self.figures.agents.iter().map(|agent| (sample::agent(agent), style_of(agent)));
         let table = table(AGENT_HEADER, 3, rows, area.width)
             .row_highlight_style(Style::new().add_modifier(Modifier::REVERSED));
-        let mut state = TableState::default().with_selected(Some(self.place()));
+        let mut state = TableState::default().with_selected(Some(self.selected_index()));
         frame.render_stateful_widget(table, area, &mut state);
     }
 
     fn draw_activities(&self, frame: &mut Frame<'_>, area: Rect) {
-        let Some(agent) = self.figures.agents.get(self.place()) else { return };
+        let Some(agent) = self.figures.agents.get(self.selected_index()) else { return };
         let rows = agent.activities.iter().map(|one| (sample::activity(one), style_of_activity(one)));
         let reason = match agent.entry.reason.as_str() {
             "" => String::new(),

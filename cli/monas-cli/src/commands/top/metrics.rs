@@ -119,9 +119,9 @@ fn agent(entry: &AgentEntry, before: Option<&AgentEntry>, rate: &impl Fn(u64) ->
         .activities
         .iter()
         .enumerate()
-        .map(|(place, one)| {
+        .map(|(index, one)| {
             let known =
-                before.and_then(|before| before.activities.get(place)).filter(|known| known.name == one.name);
+                before.and_then(|before| before.activities.get(index)).filter(|known| known.name == one.name);
             let (calls, failures) = (known.map(|known| known.calls), known.map(|known| known.failures));
             activity(one, rate(since(one.calls, calls)), since(one.failures, failures), stuck)
         })
@@ -129,7 +129,7 @@ fn agent(entry: &AgentEntry, before: Option<&AgentEntry>, rate: &impl Fn(u64) ->
     let mut open = open_load(entry, before);
     let with_open_call =
         |one: ActivityFigures| match open.iter().position(|(name, _)| *name == one.entry.name) {
-            Some(place) => one.with_open_call(open.remove(place).1),
+            Some(position) => one.with_open_call(open.remove(position).1),
             None => one,
         };
     let activities: Vec<ActivityFigures> = activities.into_iter().map(with_open_call).collect();

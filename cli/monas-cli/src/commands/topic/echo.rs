@@ -58,7 +58,7 @@ fn write(
             writeln!(
                 console.out,
                 "{at:.3} s {} {path} by {publisher}, number {sequence}: {message}",
-                place(seen)
+                hosts(seen)
             )?;
         }
     }
@@ -67,7 +67,7 @@ fn write(
 }
 
 /// The host, and the host that a message came from.
-pub(crate) fn place(seen: &Seen) -> String {
+pub(crate) fn hosts(seen: &Seen) -> String {
     match seen.from == seen.host {
         true => seen.host.clone(),
         false => format!("{} from {}", seen.host, seen.from),

@@ -7,7 +7,7 @@ use monas_link::control::messages::Seen;
 use monas_terminal::{CommandFailure, CommandOutput, Exit, Format, Repaint, WallClock};
 use serde_json::{Value, json};
 
-use super::echo::place;
+use super::echo::hosts;
 use crate::remote::{RunSelector, WatchLimits, connection, failure, watch};
 
 /// Time until the first report.
@@ -221,7 +221,7 @@ fn line(figure: StreamMetric, stream: &StreamStatistics) -> String {
         }
         StreamMetric::Delay => format!("{}, {} seen", stream.delay.text(), stream.seen),
     };
-    format!("{path} on {} by {publisher}: {said}", place(&stream.last))
+    format!("{path} on {} by {publisher}: {said}", hosts(&stream.last))
 }
 
 fn object(figure: StreamMetric, stream: &StreamStatistics, lost: u64) -> Value {

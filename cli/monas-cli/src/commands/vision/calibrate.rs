@@ -78,7 +78,7 @@ pub(super) fn calibrate(
 ) -> Result<Exit, CommandFailure> {
     let format = arguments.format.value;
     let mut sampler = ColourSampler::default();
-    let places = arguments
+    let indices = arguments
         .samples
         .iter()
         .map(|sample| Ok((sample.image(arguments)?, sample)))
@@ -94,7 +94,7 @@ pub(super) fn calibrate(
         if !sampler.add_image(&image, &camera) {
             writeln!(console.remarks(), "{}: not enough carpet to find its colour", file.display())?;
         }
-        for (_, sample) in places.iter().filter(|(place, _)| *place == index) {
+        for (_, sample) in indices.iter().filter(|(position, _)| *position == index) {
             let added = sampler.add_sample(sample.class, &image, sample.area);
             added.map_err(|error| failed(format!("--sample {}: {error}", sample.text)))?;
         }

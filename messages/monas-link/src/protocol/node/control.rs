@@ -57,8 +57,8 @@ impl Handshake {
     }
 
     /// Continues the introduction with the offer at index `place`, or ends it.
-    fn set_next_offer(&mut self, place: usize) {
-        self.next = (place < self.offers).then_some(place);
+    fn set_next_offer(&mut self, index: usize) {
+        self.next = (index < self.offers).then_some(index);
     }
 }
 
@@ -84,8 +84,8 @@ impl Node {
     /// Whether each offer fits into a Hello.
     pub(super) fn check_offers(&self) -> Result<(), Error> {
         let limit = self.spending.as_ref().map_or(CONTROL_BYTES, BudgetWindow::payload);
-        for place in 0..self.send.len() {
-            let offer = Offer { last: u64::MAX, ..self.offer(place) };
+        for index in 0..self.send.len() {
+            let offer = Offer { last: u64::MAX, ..self.offer(index) };
             if !self.room().takes(&offer) {
                 let path = &offer.path;
                 let needed = offer.encoded_len() + PART_OVERHEAD + CONTROL_OVERHEAD;
@@ -130,28 +130,28 @@ impl Node {
     fn hello(&mut self, first: usize) -> Hello {
         let mut room = self.room();
         let mut hello = Hello { first: first as u32, total: self.send.len() as u32, offers: Vec::new() };
-        let mut place = first;
-        while place < self.send.len() {
-            let offer = self.offer(place);
+        let mut index = first;
+        while index < self.send.len() {
+            let offer = self.offer(index);
             if !room.takes(&offer) {
                 break;
             }
             hello.offers.push(offer);
-            place += 1;
+            index += 1;
         }
-        self.introductions.set_next_offer(place);
+        self.introductions.set_next_offer(index);
         hello
     }
 
-    fn offer(&self, place: usize) -> Offer {
-        let topic = &self.send[place];
+    fn offer(&self, index: usize) -> Offer {
+        let topic = &self.send[index];
         Offer {
             path: topic.path.to_string(),
             kind: topic.kind.to_string(),
             r#type: topic.type_name.to_string(),
             schema: topic.schema.hash().to_vec(),
             reliable: topic.reliability == Reliability::Reliable,
-            last: self.outgoing[place].head().1,
+            last: self.outgoing[index].head().1,
         }
     }
 
@@ -172,15 +172,15 @@ impl Node {
             }
         }
         for _ in 0..self.send.len() {
-            let place = self.next_head % self.send.len();
-            let (first, last) = self.outgoing[place].head();
-            let head = Head { offer: place as u32, first, last };
+            let index = self.next_head % self.send.len();
+            let (first, last) = self.outgoing[index].head();
+            let head = Head { offer: index as u32, first, last };
             // A topic without messages has no progress to report.
             if last > 0 && !room.takes(&head) {
                 break;
             }
             beat.heads.extend((last > 0).then_some(head));
-            self.next_head = place + 1;
+            self.next_head = index + 1;
         }
         beat
     }
@@ -212,7 +212,7 @@ impl Node {
             for (offer, reading) in peer.topics.iter_mut().enumerate() {
                 let Some(reading) = reading else { continue };
                 let PeerTopicState::Different { tries, .. } = &mut reading.state else { continue };
-                let topic = self.wanted.get(&reading.path).map(|place| &self.receive[*place]);
+                let topic = self.wanted.get(&reading.path).map(|index| &self.receive[*index]);
                 let Some(topic) = topic.filter(|_| *tries > 0) else { continue };
                 *tries -= 1;
                 self.introductions.refuse(Refusal {

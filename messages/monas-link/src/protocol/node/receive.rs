@@ -46,9 +46,9 @@ impl Node {
 
     /// The index of the peer with that name, added if necessary.
     fn peer(&mut self, name: &Arc<str>, now: Timestamp) -> usize {
-        if let Some(place) = self.peers.iter().position(|peer| peer.name == *name) {
-            self.peers[place].last_received = now;
-            return place;
+        if let Some(index) = self.peers.iter().position(|peer| peer.name == *name) {
+            self.peers[index].last_received = now;
+            return index;
         }
         if self.peers.len() == PEER_LIMIT {
             self.forget_most_silent(now);
@@ -58,9 +58,9 @@ impl Node {
     }
 
     fn forget_most_silent(&mut self, now: Timestamp) {
-        let silent = (0..self.peers.len()).min_by_key(|place| self.peers[*place].last_received);
-        if let Some(place) = silent {
-            let mut peer = self.peers.swap_remove(place);
+        let silent = (0..self.peers.len()).min_by_key(|index| self.peers[*index].last_received);
+        if let Some(position) = silent {
+            let mut peer = self.peers.swap_remove(position);
             let name = peer.name.clone();
             let mut context = DeliveryContext::new(&name, peer.clock.offset(), now, &mut self.deliveries);
             peer.end(&mut |topic, message| context.deliver(topic, message));
@@ -81,9 +81,9 @@ impl Node {
             );
             return self.note_mismatch(&packet.from, None, text);
         }
-        let place = self.peer(&packet.from, now);
+        let index = self.peer(&packet.from, now);
         if let Some(hello) = control.hello {
-            self.handle_hello(place, control.incarnation, hello, now);
+            self.handle_hello(index, control.incarnation, hello, now);
         }
         // The requesting host may be unknown too.
         let is_asked = |beat: &Beat| beat.unknown.iter().any(|host| **host == *self.host);
@@ -92,26 +92,26 @@ impl Node {
             self.schedule_beat(now);
         }
         let silence = self.silence();
-        if !self.peers[place].is_current(control.incarnation, now, silence) {
+        if !self.peers[index].is_current(control.incarnation, now, silence) {
             // Its Hello is requested.
             return self.schedule_beat(now);
         }
         if let Some(beat) = control.beat {
-            self.handle_beat(place, beat, now);
+            self.handle_beat(index, beat, now);
         }
         if let Some(refusal) = control.refusal {
-            self.handle_refusal(&packet.from, place, refusal);
+            self.handle_refusal(&packet.from, index, refusal);
         }
     }
 
-    fn handle_hello(&mut self, place: usize, incarnation: u64, hello: Hello, now: Timestamp) {
+    fn handle_hello(&mut self, index: usize, incarnation: u64, hello: Hello, now: Timestamp) {
         let (first, total) = (hello.first as usize, hello.total as usize);
         if total > OFFER_LIMIT || first > total || hello.offers.len() > total - first {
             self.counters.malformed += 1;
             return;
         }
         let silence = self.silence();
-        let peer = &mut self.peers[place];
+        let peer = &mut self.peers[index];
         if peer.is_stale(incarnation, now, silence) {
             return;
         }
@@ -125,20 +125,20 @@ impl Node {
             self.schedule_beat(now);
         }
         for (place_of_offer, offer) in (first..).zip(hello.offers) {
-            self.take_offer(place, place_of_offer, offer);
+            self.take_offer(index, place_of_offer, offer);
         }
-        self.schedule_beat_if_missing(place, now);
+        self.schedule_beat_if_missing(index, now);
     }
 
-    fn take_offer(&mut self, place: usize, place_of_offer: usize, offer: Offer) {
-        let known = self.peers[place].topics.get(place_of_offer);
+    fn take_offer(&mut self, index: usize, place_of_offer: usize, offer: Offer) {
+        let known = self.peers[index].topics.get(place_of_offer);
         if known.is_none_or(Option::is_some) || offer.path.len() > NAME_BYTES || offer.last > HIGHEST_NUMBER {
             return;
         }
         let path: Arc<str> = offer.path.as_str().into();
-        let host = self.peers[place].name.clone();
+        let host = self.peers[index].name.clone();
         let state = self.compare_offer(&host, &path, &offer);
-        self.peers[place].topics[place_of_offer] = Some(PeerTopic { path, state });
+        self.peers[index].topics[place_of_offer] = Some(PeerTopic { path, state });
     }
 
     fn compare_offer(&mut self, host: &str, path: &str, offer: &Offer) -> PeerTopicState {
@@ -173,8 +173,8 @@ impl Node {
         PeerTopicState::Read { topic, incoming }
     }
 
-    fn handle_beat(&mut self, place: usize, beat: Beat, now: Timestamp) {
-        let peer = &mut self.peers[place];
+    fn handle_beat(&mut self, index: usize, beat: Beat, now: Timestamp) {
+        let peer = &mut self.peers[index];
         peer.beat = Some((beat.sent, now));
         for echo in beat.echoes.iter().filter(|echo| *echo.host == *self.host) {
             let [sent, heard, answered] = [echo.sent, echo.received, beat.sent].map(Timestamp::from_nanos);
@@ -189,7 +189,7 @@ impl Node {
                 incoming.head(head.first, head.last, &mut |message| context.deliver(*topic, message));
             }
         }
-        self.schedule_beat_if_missing(place, now);
+        self.schedule_beat_if_missing(index, now);
         let host = self.host.clone();
         for missing in beat.missing.iter().filter(|missing| *missing.host == *host).take(ASKED_SPANS) {
             let topic = missing.offer as usize;
@@ -213,20 +213,20 @@ impl Node {
         self.beat * 3
     }
 
-    fn schedule_beat_if_missing(&mut self, place: usize, now: Timestamp) {
+    fn schedule_beat_if_missing(&mut self, index: usize, now: Timestamp) {
         let is_missing = |reading: &PeerTopic| matches!(&reading.state, PeerTopicState::Read { incoming, .. } if incoming.is_missing());
-        if self.peers[place].topics.iter().flatten().any(is_missing) {
+        if self.peers[index].topics.iter().flatten().any(is_missing) {
             self.schedule_beat(now);
         }
     }
 
-    fn handle_refusal(&mut self, from: &str, place: usize, refusal: Refusal) {
+    fn handle_refusal(&mut self, from: &str, index: usize, refusal: Refusal) {
         if *refusal.host != *self.host {
             return;
         }
         let offer = refusal.offer as usize;
         if refusal.is_answer {
-            return self.handle_answer(from, place, offer, &refusal);
+            return self.handle_answer(from, index, offer, &refusal);
         }
         let Some(topic) = self.send.get(offer) else { return };
         let text =
@@ -242,12 +242,12 @@ impl Node {
         self.note_mismatch(from, Some(&path), text);
     }
 
-    fn handle_answer(&mut self, from: &str, place: usize, offer: usize, refusal: &Refusal) {
-        let Some(Some(reading)) = self.peers[place].topics.get_mut(offer) else { return };
+    fn handle_answer(&mut self, from: &str, index: usize, offer: usize, refusal: &Refusal) {
+        let Some(Some(reading)) = self.peers[index].topics.get_mut(offer) else { return };
         let PeerTopicState::Different { tries, .. } = &mut reading.state else { return };
         *tries = 0;
         let path = reading.path.clone();
-        let Some(topic) = self.wanted.get(&path).map(|place| &self.receive[*place]) else { return };
+        let Some(topic) = self.wanted.get(&path).map(|position| &self.receive[*position]) else { return };
         let text = format!("is not read here, since it differs: {}", declaration_differences(topic, refusal));
         self.note_mismatch(from, Some(&path), text);
     }
@@ -264,9 +264,9 @@ impl Node {
             self.counters.malformed += 1;
             return;
         }
-        let place = self.peer(&packet.from, now);
+        let index = self.peer(&packet.from, now);
         let (held, silence) = (self.held_bytes(), self.silence());
-        let peer = &mut self.peers[place];
+        let peer = &mut self.peers[index];
         let is_current = peer.is_current(stamp.incarnation, now, silence);
         let reading = peer.topics.get_mut(stamp.offer as usize).and_then(Option::as_mut);
         let Some(reading) = reading.filter(|reading| is_current && reading.path == *path) else {
@@ -291,7 +291,7 @@ impl Node {
                 }
             }
         }
-        self.schedule_beat_if_missing(place, now);
+        self.schedule_beat_if_missing(index, now);
     }
 
     fn held_bytes(&self) -> usize {

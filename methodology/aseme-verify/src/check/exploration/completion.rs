@@ -117,9 +117,10 @@ fn reaches_end(subject: &CheckedModel, completes: &[bool], composite: NodeId) ->
         // left too
         let around = subject.chart.node(node).parent.filter(|&parent| inside && parent != composite);
         open.extend(around);
-        let ways = subject.outgoing(node).iter().filter(|&&id| can_leave(subject, completes, id));
+        let leaving = subject.outgoing(node).iter().filter(|&&id| can_leave(subject, completes, id));
         open.extend(
-            ways.map(|&id| subject.transition(id).target)
+            leaving
+                .map(|&id| subject.transition(id).target)
                 .filter(|&target| subject.contains(composite, target)),
         );
     }

@@ -56,8 +56,8 @@ fn restless_steps(subject: &CheckedModel, found: &Exploration) -> Vec<Vec<(usize
         let (from, to) = (&states[edge.from], &states[edge.to]);
         let stays = to.is_active(node) && !to.running.contains(&node);
         let is_new_start =
-            |place: &&NodeId| subject.kind(**place) == NodeKind::Start && !from.is_active(**place);
-        if stays || to.configuration.iter().any(|place| is_new_start(&place)) {
+            |node: &&NodeId| subject.kind(**node) == NodeKind::Start && !from.is_active(**node);
+        if stays || to.configuration.iter().any(|node| is_new_start(&node)) {
             waits.insert((edge.from, node));
         }
     }

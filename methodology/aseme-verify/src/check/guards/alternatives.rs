@@ -22,8 +22,8 @@ impl GuardCheck<'_> {
             return Vec::new();
         }
         let never = |id: &TransitionId| self.subject.transition(*id).expression.is_never();
-        let ways = self.subject.outgoing(node).iter().copied().filter(|id| !never(id));
-        let transitions: Vec<TransitionId> = ways.collect();
+        let possible = self.subject.outgoing(node).iter().copied().filter(|id| !never(id));
+        let transitions: Vec<TransitionId> = possible.collect();
         let mut found = Vec::new();
         for (index, &later) in transitions.iter().enumerate() {
             let earlier = &transitions[index.saturating_sub(MAX_PAIRWISE_TRANSITIONS)..index];

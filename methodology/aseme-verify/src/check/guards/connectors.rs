@@ -57,7 +57,7 @@ impl GuardCheck<'_> {
     }
 
     /// M06: a path through connectors whose guards contradict each other.
-    pub(crate) fn dead_ways(&self, node: NodeId) -> Vec<Diagnostic> {
+    pub(crate) fn dead_paths(&self, node: NodeId) -> Vec<Diagnostic> {
         let (mut found, mut looked) = (Vec::new(), 0);
         if self.is_static(node) {
             // a path that continues from here is analysed from its beginning
@@ -76,7 +76,7 @@ impl GuardCheck<'_> {
             let Some(&last) = transitions.last() else { continue };
             let target = self.subject.transition(last).target;
             if transitions.len() > 1 && self.contradict(&transitions) {
-                found.push(self.dead_way(&transitions));
+                found.push(self.dead_path(&transitions));
                 continue;
             }
             if !self.is_static(target) {
@@ -121,7 +121,7 @@ impl GuardCheck<'_> {
         guards.len() > 1 && !guards.iter().any(alone) && self.logic.together(&claims).is_no()
     }
 
-    fn dead_way(&self, transitions: &[TransitionId]) -> Diagnostic {
+    fn dead_path(&self, transitions: &[TransitionId]) -> Diagnostic {
         let first = transitions
             .first()
             .map_or_else(String::new, |&id| self.subject.path(self.subject.transition(id).source));

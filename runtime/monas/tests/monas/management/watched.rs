@@ -150,8 +150,8 @@ fn overruns_at_ten_kilohertz_cost_only_the_cycles_they_cover() {
     let agent = &statistics.agents[0];
     // However busy the machine is: each place on the grid had its cycle, or is counted as missed.
     let (first, last) = (times[0].1.as_nanos(), times[1999].1.as_nanos());
-    let places = (last - first) / 100_000;
-    assert!(places <= 2000 + agent.missed + agent.overruns, "{places} places, {} missed", agent.missed);
+    let cycles = (last - first) / 100_000;
+    assert!(cycles <= 2000 + agent.missed + agent.overruns, "{cycles} cycles, {} missed", agent.missed);
     assert!(agent.missed == 0 || agent.overruns > 0);
     let percentiles = agent.cycle_percentiles.unwrap();
     assert!(percentiles.p50 > Duration::ZERO && percentiles.p50 <= percentiles.p99);

@@ -48,9 +48,9 @@ fn attack(world: &SimulatedWorld, me: &RobotState, goal: Vector) -> Command {
     let foot = Side::of(me.pose.to_own(ball).y);
     let ahead = (goal - ball).normalize();
     let left = Vector::new(-ahead.y, ahead.x);
-    let place = ball - ahead * 0.16 - left * (0.05 * foot.sign());
+    let position = ball - ahead * 0.16 - left * (0.05 * foot.sign());
     let aim = angle(libm::atan2(goal.y - ball.y, goal.x - ball.x) - me.pose.heading);
-    let off = me.pose.to_own(place);
+    let off = me.pose.to_own(position);
     if off.norm() < 0.03 && aim.abs() < 0.15 {
         return Command::new(Motion::Kick(foot));
     }
@@ -65,14 +65,14 @@ fn attack(world: &SimulatedWorld, me: &RobotState, goal: Vector) -> Command {
 
 fn wait(world: &SimulatedWorld, me: &RobotState, goal: Vector) -> Command {
     let ball = world.ball().position;
-    let place =
+    let position =
         (ball - goal * 0.4) * 0.6 + Vector::new(0.0, if me.number.is_multiple_of(2) { 0.8 } else { -0.8 });
-    go(me, place, ball)
+    go(me, position, ball)
 }
 
 /// Walks to a position and faces a point once there.
-fn go(me: &RobotState, place: Vector, face: Vector) -> Command {
-    let off = me.pose.to_own(place);
+fn go(me: &RobotState, position: Vector, face: Vector) -> Command {
+    let off = me.pose.to_own(position);
     let look = me.pose.to_own(face);
     if off.norm() > 0.3 {
         let bearing = libm::atan2(off.y, off.x);

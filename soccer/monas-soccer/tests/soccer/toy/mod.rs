@@ -226,15 +226,15 @@ impl Robot for Body {
 /// Sightings of the objects within half a radian of the gaze.
 fn sightings(world: &World, head_yaw: f64) -> Vec<Sighting> {
     let mut seen = Vec::new();
-    let mut see = |kind: ObjectKind, colour: Colour, place: Point2<f64>| {
-        let place = world.field_from_robot.inverse_transform_point(&place);
-        let bearing = libm::atan2(place.y, place.x);
+    let mut see = |kind: ObjectKind, colour: Colour, position: Point2<f64>| {
+        let position = world.field_from_robot.inverse_transform_point(&position);
+        let bearing = libm::atan2(position.y, position.x);
         if (bearing - head_yaw).abs() < 0.5 {
             seen.push(Sighting {
                 kind: kind.into(),
                 colour: colour.into(),
                 bearing,
-                distance: place.coords.norm(),
+                distance: position.coords.norm(),
             });
         }
     };

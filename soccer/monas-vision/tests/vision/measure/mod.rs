@@ -488,12 +488,12 @@ impl View {
         for [a, b] in near {
             let middle = nalgebra::center(&a, &b);
             let truth = strokes(&self.scene.markings).into_iter().map(|stroke| {
-                let places =
+                let positions =
                     [0.1, 0.3, 0.5, 0.7, 0.9].map(|part| self.field_from_robot * (a + (b - a) * part));
-                let offset = places.iter().map(|place| stroke.distance(place)).sum::<f64>() / 5.0;
+                let offset = positions.iter().map(|position| stroke.distance(position)).sum::<f64>() / 5.0;
                 let along = stroke.direction(&(self.field_from_robot * middle));
-                let way = self.field_from_robot.rotation * (b - a).normalize();
-                (offset, libm::asin(way.perp(&along).abs().min(1.0)))
+                let distance = self.field_from_robot.rotation * (b - a).normalize();
+                (offset, libm::asin(distance.perp(&along).abs().min(1.0)))
             });
             let (offset, angle) = truth.min_by(|a, b| a.0.total_cmp(&b.0)).unwrap();
             let tolerance = 0.06 + 0.04 * middle.coords.norm();
@@ -514,10 +514,10 @@ impl View {
         for point in seen.border_points.iter().map(|point| point.position) {
             let distance = point.coords.norm();
             let origin = Point2::from(self.field_from_robot.translation.vector);
-            let way = self.field_from_robot.rotation * point.coords.normalize();
+            let ray = self.field_from_robot.rotation * point.coords.normalize();
             let until =
-                |at: f64, way: f64, end: f64| if way > 0.0 { (end - at) / way } else { (-end - at) / way };
-            let truth = until(origin.x, way.x, length).min(until(origin.y, way.y, width));
+                |at: f64, ray: f64, end: f64| if ray > 0.0 { (end - at) / ray } else { (-end - at) / ray };
+            let truth = until(origin.x, ray.x, length).min(until(origin.y, ray.y, width));
             let error = (distance - truth).abs() / truth;
             if truth > BORDER_RANGE {
                 continue;

@@ -15,20 +15,20 @@ pub(super) fn choose(random: &mut Random, sequence: &Sequence) -> View {
     let mut turn = random.uniform(-3.1, 3.1);
     if random.uniform(0.0, 1.0) < 0.5 {
         let goal = Vector2::new(if position.x < 0.0 { 3.0 } else { -3.0 }, random.uniform(-0.9, 0.9));
-        let way = goal - position;
-        turn = libm::atan2(way.y, way.x) - head.yaw + random.uniform(-0.3, 0.3);
+        let to_goal = goal - position;
+        turn = libm::atan2(to_goal.y, to_goal.x) - head.yaw + random.uniform(-0.3, 0.3);
     }
     let field_from_robot = Isometry2::new(position, turn);
-    let mut place = |near: f64, far: f64| {
+    let mut position_between = |near: f64, far: f64| {
         let (sin, cos) = libm::sincos(head.yaw + random.uniform(-0.5, 0.5));
         let distance = random.uniform(near, far);
         field_from_robot * Point2::new(distance * cos, distance * sin)
     };
-    let places = [place(0.4, 1.5), place(0.4, 1.5)];
-    let ball = place(0.3, 2.5);
+    let positions = [position_between(0.4, 1.5), position_between(0.4, 1.5)];
+    let ball = position_between(0.3, 2.5);
     let count = if random.uniform(0.0, 1.0) < 0.7 { 1 } else { 2 };
     let mut robots: Vec<RobotFigure> = Vec::new();
-    for position in places.into_iter().take(count) {
+    for position in positions.into_iter().take(count) {
         let jersey = match random.uniform(0.0, 3.0) as u32 {
             0 => Jersey::Blue,
             1 => Jersey::Red,

@@ -61,7 +61,7 @@ impl ChartCounts {
     }
 
     /// The index of a chart among the known ones; equal charts share one entry.
-    pub(crate) fn place_of(chart: &Statechart, known: &mut Vec<ChartCounts>) -> usize {
+    pub(crate) fn chart_index(chart: &Statechart, known: &mut Vec<ChartCounts>) -> usize {
         known.iter().position(|covered| covered.chart == *chart).unwrap_or_else(|| {
             known.push(ChartCounts::new(chart));
             known.len() - 1
@@ -112,9 +112,9 @@ impl ChartCounts {
         let mut refused = BTreeMap::new();
         for tried in &self.tried {
             let mut later = 0;
-            for (place, &id) in tried.iter().rev().enumerate() {
+            for (index, &id) in tried.iter().rev().enumerate() {
                 let expression = &self.chart.transition(id).expression;
-                if place > 0 && expression.guard.is_some() && !expression.is_never() {
+                if index > 0 && expression.guard.is_some() && !expression.is_never() {
                     refused.insert(id, later);
                 }
                 later += self.fired[id.0 as usize];
@@ -208,9 +208,9 @@ mod tests {
     fn a_guard_is_refused_by_whatever_is_tried_after_it() {
         let chart = chart();
         let mut known = Vec::new();
-        let place = ChartCounts::place_of(&chart, &mut known);
-        assert_eq!(ChartCounts::place_of(&chart, &mut known), place, "equal charts are one");
-        let covered = &mut known[place];
+        let index = ChartCounts::chart_index(&chart, &mut known);
+        assert_eq!(ChartCounts::chart_index(&chart, &mut known), index, "equal charts are one");
+        let covered = &mut known[index];
         assert!(covered.count(&fired(&chart, "c")));
         assert_eq!(covered.guards_held(), Fraction { met: 1, all: 2 });
         assert_eq!(
@@ -248,8 +248,8 @@ mod tests {
     #[test]
     fn a_step_of_another_chart_is_reported() {
         let mut known = Vec::new();
-        let place = ChartCounts::place_of(&chart(), &mut known);
-        assert!(!known[place].count(&records::Chart { entries: vec![99], ..records::Chart::default() }));
-        assert!(!known[place].count(&records::Chart { selected: vec![99], ..records::Chart::default() }));
+        let index = ChartCounts::chart_index(&chart(), &mut known);
+        assert!(!known[index].count(&records::Chart { entries: vec![99], ..records::Chart::default() }));
+        assert!(!known[index].count(&records::Chart { selected: vec![99], ..records::Chart::default() }));
     }
 }

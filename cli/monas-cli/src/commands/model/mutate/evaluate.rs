@@ -49,9 +49,9 @@ pub(crate) fn evaluate_all(
     let work = || -> Result<Vec<(usize, MutantOutcome)>, Error> {
         let mut outcomes = Vec::new();
         loop {
-            let place = next.fetch_add(1, Ordering::Relaxed);
-            let Some(mutant) = mutants.get(place) else { return Ok(outcomes) };
-            outcomes.push((place, evaluate_one(mutant, scenarios, runner)?));
+            let index = next.fetch_add(1, Ordering::Relaxed);
+            let Some(mutant) = mutants.get(index) else { return Ok(outcomes) };
+            outcomes.push((index, evaluate_one(mutant, scenarios, runner)?));
         }
     };
     let count = thread::available_parallelism().map_or(1, usize::from);
@@ -66,7 +66,7 @@ pub(crate) fn evaluate_all(
         }
         Ok(())
     })?;
-    outcomes.sort_by_key(|(place, _)| *place);
+    outcomes.sort_by_key(|(position, _)| *position);
     Ok(outcomes.into_iter().map(|(_, verdict)| verdict).collect())
 }
 
@@ -82,9 +82,9 @@ fn evaluate_one(
             return Ok(MutantOutcome::Refused(why));
         }
     };
-    for (place, scenario) in scenarios.iter().enumerate() {
+    for (index, scenario) in scenarios.iter().enumerate() {
         if let Some(difference) = runner.first_difference(&chart, &scenario.steps)? {
-            return Ok(MutantOutcome::Killed(place, difference));
+            return Ok(MutantOutcome::Killed(index, difference));
         }
     }
     Ok(MutantOutcome::Survived)

@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 use yase::Source;
 
 use super::{EvaluatedMutant, MutantOutcome};
-use crate::commands::model::scenario::{Scenario, place};
+use crate::commands::model::scenario::{Scenario, file_and_line};
 
 /// The outcomes of all mutants of a model.
 pub(crate) struct MutationReport<'a> {
@@ -109,7 +109,7 @@ impl MutationReport<'_> {
             writeln!(console.out, "no scenario notices:")?;
         }
         for EvaluatedMutant { mutant, .. } in survivors {
-            writeln!(console.out, "  {}: {}", self.place(mutant.span.start), mutant.description)?;
+            writeln!(console.out, "  {}: {}", self.file_and_line(mutant.span.start), mutant.description)?;
             writeln!(console.out, "    a scenario would have to show {}", mutant.wanted)?;
         }
         Ok(())
@@ -122,14 +122,14 @@ impl MutationReport<'_> {
             if std::mem::take(&mut is_first) {
                 writeln!(console.out, "cannot run:")?;
             }
-            writeln!(console.out, "  {}: {}", self.place(mutant.span.start), mutant.description)?;
+            writeln!(console.out, "  {}: {}", self.file_and_line(mutant.span.start), mutant.description)?;
             writeln!(console.out, "    {why}")?;
         }
         Ok(())
     }
 
     /// `file:line`
-    fn place(&self, byte: usize) -> String {
+    fn file_and_line(&self, byte: usize) -> String {
         format!("{}:{}", self.source.name, self.source.position(byte).0)
     }
 
@@ -159,7 +159,7 @@ impl MutationReport<'_> {
             MutantOutcome::Refused(why) => ("refused", None, None, Some(why.clone())),
             MutantOutcome::Killed(scenario, difference) => {
                 let by = self.scenarios.get(*scenario).map(|it| it.file.display().to_string());
-                ("noticed", by, Some(place(difference)), Some(difference.to_string()))
+                ("noticed", by, Some(file_and_line(difference)), Some(difference.to_string()))
             }
             MutantOutcome::Survived => ("survived", None, None, None),
         };

@@ -58,14 +58,14 @@ impl AgentNames {
         if field == "delivered" {
             return path.ends_with(".topic").then(|| self.topics.get(&number)).flatten().map(String::as_str);
         }
-        let place = usize::try_from(number).ok()?;
+        let index = usize::try_from(number).ok()?;
         let (model, _) = self.models.iter().find(|(model, _)| u64::from(model.chart) == chart)?;
         let name = match field {
-            "exits" | "entries" => model.nodes.get(place),
-            "selected" | "preempted" | "held" | "taken" => model.transitions.get(place),
+            "exits" | "entries" => model.nodes.get(index),
+            "selected" | "preempted" | "held" | "taken" => model.transitions.get(index),
             // These count from 1; 0 stands for none.
-            "event" => model.events.get(place.checked_sub(1)?),
-            "deferred" => model.nodes.get(place.checked_sub(1)?),
+            "event" => model.events.get(index.checked_sub(1)?),
+            "deferred" => model.nodes.get(index.checked_sub(1)?),
             _ => None,
         };
         name.map(String::as_str)
