@@ -159,9 +159,9 @@ pub struct Body {
     pub label: String,
     /// The group whose colour it has: 0 or 1.
     pub group: usize,
-    /// Its place, m.
+    /// Its position, m.
     pub x: f64,
-    /// Its place, m.
+    /// Its position, m.
     pub y: f64,
     /// Its heading, rad.
     pub heading: f64,
@@ -176,9 +176,9 @@ pub struct Body {
 pub struct SceneObject {
     /// Its kind: `ball`.
     pub kind: String,
-    /// Its place, m.
+    /// Its position, m.
     pub x: f64,
-    /// Its place, m.
+    /// Its position, m.
     pub y: f64,
     /// Its velocity, m/s.
     pub vx: f64,
@@ -195,9 +195,9 @@ pub struct Belief {
     pub host: String,
     /// The subject: `self` or the kind of an object.
     pub kind: String,
-    /// Its place, m.
+    /// Its position, m.
     pub x: f64,
-    /// Its place, m.
+    /// Its position, m.
     pub y: f64,
     /// Its heading, rad, if it has one.
     pub heading: Option<f64>,
