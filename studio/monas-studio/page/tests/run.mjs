@@ -651,7 +651,7 @@ async function steering(browser) {
   await outcome(/resume: done/);
   await page.locator('tr.choice', { hasText: 'blue-2' }).getByText('runs').waitFor();
   assert.equal(await state(), 'runs');
-  await control.getByLabel('What is set').fill('WalkTowardsBall.nonsense');
+  await control.getByLabel('Parameter name').fill('WalkTowardsBall.nonsense');
   await control.getByLabel('Value', { exact: true }).fill('1');
   await control.getByRole('button', { name: 'Set', exact: true }).click();
   await outcome(/refused.*nonsense/);
@@ -666,7 +666,7 @@ async function steering(browser) {
   await outcome(/swap to attacker\.srm: done/);
   // a parameter of an activity, whose name is completed
   assert.equal(await control.locator('option[value="MotionController."]').count(), 1);
-  await control.getByLabel('What is set').fill('MotionController.walk_forward');
+  await control.getByLabel('Parameter name').fill('MotionController.walk_forward');
   await control.getByLabel('Value', { exact: true }).fill('0.2');
   await control.getByRole('button', { name: 'Set', exact: true }).click();
   await outcome(/walk_forward=0\.2: done/);

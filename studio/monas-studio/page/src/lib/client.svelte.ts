@@ -29,9 +29,9 @@ const STEPS = 200;
 const HISTORY = 60;
 const FIRST_RETRY = 500;
 const LAST_RETRY = 5000;
-/** The server's word that it ends. */
+/** Close reason of a server that ends. */
 const GOING_AWAY = 1001;
-/** The server's word that it has too many pages. */
+/** Close reason of a server with too many pages. */
 const TRY_AGAIN_LATER = 1013;
 /** The longest request that may change a run or edit models, in bytes: a longer one ends the connection. */
 const REQUEST_LIMIT = 1 << 20;
@@ -41,7 +41,7 @@ export interface ChartState extends Omit<ChartNews, 'steps'> {
   steps: ChartStep[];
   /** The step that entered each active node, if it was seen. */
   enteredBy: Map<number, ChartStep>;
-  /** What was decided in its main region, the latest last. */
+  /** The decisions in its main region, the latest last. */
   decisions: Decision[];
 }
 
@@ -63,12 +63,12 @@ export interface AgentHistory {
   overruns: number[];
 }
 
-/** The connection to the server, and what is known of the run. */
+/** The connection to the server, and the received state of the run. */
 export class StudioClient {
   connection = $state<'connecting' | 'open' | 'closed'>('connecting');
-  /** Whether the server said that it ends. */
+  /** Whether the server announced its end. */
   hasEnded = $state(false);
-  /** Why the server does not serve this page, if it said so. */
+  /** The server's reason for not serving this page. */
   refusal = $state('');
   run = $state.raw<RunFacts | null>(null);
   now = $state(0);
@@ -83,7 +83,7 @@ export class StudioClient {
   scene = $state.raw<SceneNews | null>(null);
   actions = $state.raw<SceneAction[]>([]);
   sample = $state.raw<Sample | null>(null);
-  /** What the cameras of the chosen robot see. */
+  /** The camera images of the chosen robot. */
   camera = $state.raw<CameraNews | null>(null);
   /** Whether a robot has delivered images. */
   hasImages = $state(false);
@@ -98,7 +98,7 @@ export class StudioClient {
   /** The same of a transition. */
   whyTransition = $state.raw<{ key: string; transition: number; why: TransitionExplanation } | null>(null);
 
-  /** The tape beside: it gets its messages from here. */
+  /** The second tape, which receives its messages through this client. */
   beside = $state.raw<StudioClient | null>(null);
 
   /** The models that this page may edit, if there are any. */
@@ -121,7 +121,7 @@ export class StudioClient {
     const socket = new WebSocket(`${scheme}://${location.host}/socket${location.search}`);
     this.#socket = socket;
     socket.onopen = () => {
-      // One that was refused may be refused again.
+      // A refused request may be refused again.
       if (this.refusal === '') {
         this.#isServed();
       }
@@ -149,7 +149,7 @@ export class StudioClient {
       this.connection = 'closed';
       this.#requests.forEach((resolve) => resolve({ done: false, reason: 'the connection was lost; whether it was done is not known' }));
       this.#requests.clear();
-      // A connection that cannot be opened afterwards does not take back what was said.
+      // A connection that cannot be opened afterwards does not change the announced reason.
       this.hasEnded ||= event.code === GOING_AWAY;
       this.refusal = event.code === TRY_AGAIN_LATER ? event.reason : '';
       setTimeout(() => this.connect(), this.#retry);
@@ -176,14 +176,14 @@ export class StudioClient {
     this.#send({ type: 'unwatch' });
   }
 
-  /** Gets the values of a chart from now on, or of none. */
+  /** Subscribes to the values of a chart, or to none. */
   watchValues(key: string | null): void {
     this.#valuesKey = key;
     this.values = null;
     this.#send({ type: 'values', key });
   }
 
-  /** Gets the images of a robot from now on; of none without one. */
+  /** Subscribes to the images of a robot, or to none. */
   watchCamera(host: string | null): void {
     this.#cameraHost = host;
     this.camera = null;
@@ -203,7 +203,7 @@ export class StudioClient {
     this.#send({ type: 'live' });
   }
 
-  /** Whether a moment of a run is shown that is not its present one. */
+  /** Whether a past moment of a live run is shown. */
   get isPast(): boolean {
     return this.tape?.live === false;
   }
@@ -392,7 +392,7 @@ export class StudioClient {
     }
   }
 
-  /** Forgets what belongs to another moment; shapes stay. */
+  /** Discards the data of another moment; shapes stay. */
   #goElsewhere(): void {
     this.camera = null;
     const charts = new Map<string, ChartState>();
@@ -468,7 +468,7 @@ export class StudioClient {
     this.#fetchPictures();
   }
 
-  /** Notes who entered what, and what was decided. */
+  /** Records the entering steps of nodes, and decisions. */
   #follow(chart: ChartState, steps: ChartStep[]): ChartState {
     const known = this.pictures.get(chart.key);
     const enteredBy = new Map(chart.enteredBy);

@@ -1,7 +1,7 @@
 import { lineage, nodeName } from './picture';
 import type { ChartStep, Picture } from './protocol';
 
-/** What a chart decided, and how often in a row. */
+/** A decision of a chart, with the number of its consecutive repetitions. */
 export interface Decision {
   /** The number of the step that first decided it. */
   number: number;
@@ -10,7 +10,7 @@ export interface Decision {
   /** The state that was left, if it is not the beginning of a composite. */
   from: string | null;
   event: string | null;
-  /** The conditions on the way, outermost first. */
+  /** The conditions on the path, outermost first. */
   conditions: string[];
   first: number;
   last: number;
@@ -21,7 +21,7 @@ const DECISIONS = 60;
 /** In a loop a decided state is left at once, and decided again. */
 const MOMENT = 1;
 
-/** The region in which most is decided: of all regions the one with most states outside of its own
+/** The region with most decisions: of all regions the one with most states outside of its own
  * regions. Regions with one state only repeat it. */
 export function mainRegion(picture: Picture): number {
   const counts = new Map<number, number>();
@@ -116,7 +116,7 @@ export function holds(decision: Decision | undefined, active: number[], now: num
   return decision !== undefined && (active.includes(decision.node) || now - decision.last < MOMENT);
 }
 
-/** Adds what a step decided in a region: a state that was one of several. */
+/** Adds the decision of a step in a region: a state that was one of several. */
 export function addDecision(
   decisions: Decision[],
   picture: Picture,

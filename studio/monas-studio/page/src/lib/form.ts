@@ -8,7 +8,7 @@ export function formText(field: FormField, value: Json): string {
   return field.kind === 'json' ? JSON.stringify(value) : typeof value === 'string' ? value : JSON.stringify(value);
 }
 
-/** The value that a text is, or what is wrong with it. */
+/** The value of a text, or its error. */
 export function formValue(field: FormField, text: string): { value: Json } | { fault: string } {
   const trimmed = text.trim();
   switch (field.kind) {

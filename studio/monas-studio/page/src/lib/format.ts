@@ -28,5 +28,5 @@ export function count(number: number): string {
   return number.toLocaleString('en').replaceAll(',', '\u202f');
 }
 
-/** What is said of tables while a run is looked back at: they are kept only now and then. */
+/** Note on tables of a past moment of a run: they are recorded at intervals only. */
 export const PAST_TABLES = 'Looking back, these figures may be some seconds older than the moment.';

@@ -1,7 +1,7 @@
 /** Inputs that take no text: keys mean the same there as elsewhere. */
 const WITHOUT_TEXT = ['range', 'checkbox', 'radio', 'button', 'file'];
 
-/** Whether a key that is pressed at an element is written there, or chooses something there. */
+/** Whether an element handles a pressed key itself: it is typed there, or selects an option. */
 export function isWritten(target: HTMLElement): boolean {
   if (target instanceof HTMLInputElement) {
     return !WITHOUT_TEXT.includes(target.type);

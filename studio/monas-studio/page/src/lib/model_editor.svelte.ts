@@ -10,7 +10,7 @@ import { textExtensions } from './text_editor';
 const OUTLINE_DELAY = 120;
 const CHECK_DELAY = 800;
 
-/** What is understood of a text. */
+/** The outline and findings of a text. */
 export interface Outline {
   text: string;
   picture: Picture | null;
@@ -18,7 +18,7 @@ export interface Outline {
   findings: ModelFinding[];
 }
 
-/** How much there is of what an edit names by number: numbers hold while that is the same. */
+/** The numbers of elements that edits refer to by number: valid while these are equal. */
 function shapeOf(outline: { picture?: Picture | null; parts?: ModelParts } | null, edit: ModelEdit): string {
   const parts = outline?.parts;
   switch (edit.edit) {
@@ -58,7 +58,7 @@ export class ModelEditor {
   checked = $state.raw<{ text: string; findings: ModelFinding[]; stopped: boolean } | null>(null);
   isChecking = $state(false);
   outcome = $state.raw<Outcome | null>(null);
-  /** The file as it is on disk now, if it has changed since it was read; without a text if it was deleted. */
+  /** The present file on disk if it has changed since it was read; without a text if deleted. */
   conflict = $state.raw<{ text: string | null; revision: string } | null>(null);
   canUndo = $state(false);
   canRedo = $state(false);
@@ -132,7 +132,7 @@ export class ModelEditor {
     await this.reload();
   }
 
-  /** Reads the file again; what was not saved is lost. */
+  /** Reads the file again; unsaved changes are lost. */
   async reload(): Promise<void> {
     const { file, name } = this;
     this.isLoading = true;
@@ -148,7 +148,7 @@ export class ModelEditor {
     this.#take(name, reply.text, reply.revision);
   }
 
-  /** Goes on after the connection was lost: reads what is missing. */
+  /** Continues after the connection was lost: requests missing replies again. */
   resume(): void {
     if (this.name === '' || this.file < 0) {
       return;
@@ -160,14 +160,14 @@ export class ModelEditor {
     }
   }
 
-  /** Goes on with what the file contains now. */
+  /** Continues with the present content of the file. */
   takeTheirs(): void {
     if (typeof this.conflict?.text === 'string') {
       this.#take(this.name, this.conflict.text, this.conflict.revision);
     }
   }
 
-  /** Keeps what is here: the next save replaces what the file contains now. */
+  /** Keeps the edited text: the next save replaces the present content of the file. */
   keepMine(): void {
     const known = this.#files.get(this.name);
     if (known && this.conflict) {
@@ -177,7 +177,7 @@ export class ModelEditor {
     }
   }
 
-  /** Saves after the edits and the save that go on: these change the text and the revision. */
+  /** Saves after pending edits and saves, which change the text and the revision. */
   save(): Promise<void> {
     const name = this.name;
     this.#saves = this.#saves.then(async () => {
@@ -406,7 +406,7 @@ export class ModelEditor {
     this.#checkTimer = setTimeout(() => void this.check(), CHECK_DELAY);
   }
 
-  /** Asks what is understood of the text. */
+  /** Requests the outline of the text. */
   async #understand(): Promise<void> {
     clearTimeout(this.#outlineTimer);
     const { file, name, text } = this;
@@ -429,7 +429,7 @@ export class ModelEditor {
     }
   }
 
-  /** Says why the text is not read or checked, until it is. */
+  /** Shows why the text is not read or checked, until it is. */
   #complain(reason: string): void {
     this.#complaint = { done: false, lines: [reason] };
     this.outcome = this.#complaint;

@@ -1,12 +1,12 @@
 import type { Reply } from './protocol';
 
-/** What came of a request, for people. */
+/** The outcome of a request as text. */
 export interface Outcome {
   done: boolean;
   lines: string[];
 }
 
-/** The outcome of what was asked, with the reasons of a refusal. */
+/** The outcome of a reply, with the reasons of a refusal. */
 export function outcomeOf(what: string, reply: Reply): Outcome {
   const after = reply.cycle !== undefined && reply.cycle > 0 ? `, after cycle ${reply.cycle}` : '';
   const findings = (reply.findings ?? []).map((finding) => {

@@ -127,7 +127,7 @@ export interface SeenLine {
 /** A message that is published at the press of a button. */
 export interface SceneAction {
   label: string;
-  /** The host that it is about; none for one about all. */
+  /** The host that it concerns; none if it concerns all. */
   about: string | null;
   host: string;
   topic: string;
@@ -263,7 +263,7 @@ export interface Explanation {
   segments: { source: string; target: string; text: string; reads: ReadValue[] }[];
 }
 
-/** What the cameras of a robot see. */
+/** The camera images of a robot. */
 export interface CameraNews {
   host: string;
   t: number;
@@ -276,11 +276,11 @@ export interface TapeFacts {
   /** The speed of playing, 0 while it is held. */
   factor: number;
   events: { t: number; kind: string; text: string }[];
-  /** Of a run that goes on: whether its present moment is shown. */
+  /** For a live run: whether its present moment is shown. */
   live?: boolean;
 }
 
-/** What a chart knows at the present moment of a run; times in seconds. */
+/** The values of a chart at the present moment of a run; times in seconds. */
 export interface ChartValues {
   key: string;
   /** Its last step. */
@@ -310,7 +310,7 @@ export interface Frame {
   sample?: Sample;
   camera?: CameraNews;
   values?: ChartValues;
-  /** The moment is not a later one: what came since holds no more. */
+  /** The moment is earlier: later data are discarded. */
   elsewhere?: boolean;
   tape?: TapeFacts;
   /** The same moment of the tape beside. */
@@ -368,7 +368,7 @@ export interface TransitionPart {
   to: number | null;
   expression: string;
   modifiers: string;
-  /** Whether its entry is for other transitions too. */
+  /** Whether its entry applies to other transitions too. */
   shared: boolean;
 }
 
@@ -407,7 +407,7 @@ export interface TableRow {
   technology: string;
 }
 
-/** What of a model can be edited. */
+/** The editable elements of a model. */
 export type ModelParts =
   | { form: 'role'; states: StatePart[]; transitions: TransitionPart[]; entries: EntryPart[]; table: TableRow[] }
   | { form: 'chart'; states: StatePart[]; transitions: TransitionPart[] }
@@ -420,7 +420,7 @@ export interface Completion {
   detail: string;
 }
 
-/** The reply to a request about models: of each only its own fields. */
+/** The reply to a request about models; each kind of request has its own fields. */
 export interface ModelReply {
   done: boolean;
   reason?: string | null;
