@@ -282,7 +282,7 @@ impl Host for ChoosingHost<'_, '_> {
         if let Some(lines) = &mut self.notes.lines {
             lines.push(record.display(chart).to_string());
         }
-        if let MicroStepCause::Event(event) = record.occasion {
+        if let MicroStepCause::Event(event) = record.cause {
             self.notes.events.push(event);
             self.notes.dropped.extend(record.is_dropped().then_some(event));
         }

@@ -226,9 +226,9 @@ fn all_transition_paths<'a>(
         let own = resolver.from(id, lost);
         all[id.0 as usize].splice(0..0, own);
     }
-    let has_place = chart.node(Statechart::ROOT).kind == NodeKind::Or;
+    let root_is_or = chart.node(Statechart::ROOT).kind == NodeKind::Or;
     for transitions in all.iter_mut() {
-        transitions.retain(|transition| can_arrive(chart, transition, has_place, lost));
+        transitions.retain(|transition| can_arrive(chart, transition, root_is_or, lost));
     }
     let mut reached = vec![false; chart.nodes().len()];
     for connector in all.iter().flatten().flat_map(|path| path.via(chart)) {
@@ -248,12 +248,12 @@ fn all_transition_paths<'a>(
 fn can_arrive(
     chart: &Statechart,
     transition: &ResolvedTransition<'_>,
-    has_place: bool,
+    root_is_or: bool,
     lost: &mut LossReport<'_>,
 ) -> bool {
     let wrong = transition.targets.iter().find(|&&target| match chart.node(target).kind {
         NodeKind::Start => true,
-        NodeKind::Terminate => !has_place,
+        NodeKind::Terminate => !root_is_or,
         _ => false,
     });
     let ends = transition.segments.first().filter(|first| {

@@ -266,7 +266,7 @@ impl Comparison {
     ];
 
     /// The negated comparison, for two values that can be compared.
-    pub const fn contrary(self) -> Comparison {
+    pub const fn negated(self) -> Comparison {
         match self {
             Comparison::Equal => Comparison::NotEqual,
             Comparison::NotEqual => Comparison::Equal,

@@ -47,7 +47,7 @@ pub struct CompiledChart {
     semantics: Semantics,
     events: EventInterner,
     scripts: ScriptInterner,
-    script_places: Box<[Box<[ScriptLocation]>]>,
+    script_locations: Box<[Box<[ScriptLocation]>]>,
     pub(crate) layout: NodeOrder,
     pub(crate) states: Box<[CompiledNode]>,
     pub(crate) regions: Box<[Scope]>,
@@ -332,7 +332,7 @@ pub(crate) struct SegmentStep {
     pub(crate) exits: Option<(NodeIndex, NodeIndex)>,
     /// Whether it leads to an exit point of the composite around those nodes, so that their states
     /// are the last ones of that composite.
-    pub(crate) empties: bool,
+    pub(crate) empties_composite: bool,
     /// Its index among the segments with actions.
     pub(crate) effects: Option<usize>,
     /// The nodes around its target that are entered, if not active, outermost first, with the
@@ -603,7 +603,7 @@ impl CompiledChart {
 
     /// The scripts of its conditions and actions, with their locations.
     pub fn scripts(&self) -> impl ExactSizeIterator<Item = ScriptEntry<'_>> {
-        self.script_places.iter().enumerate().map(|(id, locations)| {
+        self.script_locations.iter().enumerate().map(|(id, locations)| {
             let id = ScriptId(id as u32);
             ScriptEntry { id, text: self.scripts.text(id), locations }
         })

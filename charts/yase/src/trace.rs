@@ -17,7 +17,7 @@ pub struct TraceRecord<'a> {
     /// The time of the step.
     pub time: Timestamp,
     /// The cause of the micro-step.
-    pub occasion: MicroStepCause,
+    pub cause: MicroStepCause,
     /// The compound transitions taken, in the order of execution.
     pub selected: &'a [CompoundTransitionId],
     /// The transitions that lost a conflict.
@@ -82,7 +82,7 @@ impl<N: Fn(NodeId) -> String> fmt::Display for TraceLine<'_, N> {
     /// omitted.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let record = &self.record;
-        match record.occasion {
+        match record.cause {
             MicroStepCause::Start => write!(f, "{} start", record.time)?,
             MicroStepCause::Swap => write!(f, "{} swap", record.time)?,
             MicroStepCause::Eventless => write!(f, "{} -:", record.time)?,
@@ -97,7 +97,7 @@ impl<N: Fn(NodeId) -> String> fmt::Display for TraceLine<'_, N> {
             false => write!(f, " {}", compounds(record.selected))?,
             true if record.is_dropped() => write!(f, " dropped")?,
             true if matches!(
-                record.occasion,
+                record.cause,
                 MicroStepCause::Start | MicroStepCause::Swap | MicroStepCause::Finish
             ) => {}
             true => write!(f, " nothing")?,
@@ -116,7 +116,7 @@ impl<N: Fn(NodeId) -> String> fmt::Display for TraceLine<'_, N> {
 impl TraceRecord<'_> {
     /// Whether an event was neither taken, held nor deferred.
     pub fn is_dropped(&self) -> bool {
-        matches!(self.occasion, MicroStepCause::Event(_))
+        matches!(self.cause, MicroStepCause::Event(_))
             && self.selected.is_empty()
             && self.held.is_empty()
             && self.deferred.is_none()

@@ -49,7 +49,7 @@ pub(crate) struct KeptRecordings {
 /// The grammar of a file of robots.
 pub fn robots_grammar() -> Grammar {
     let services = Kind::Word(vec!["auto", "systemd", "script", "none"]);
-    let seconds = Kind::Duration { least: Duration::from_secs(1) };
+    let seconds = Kind::Duration { min: Duration::from_secs(1) };
     let robot = ElementRule::new("robot", "a robot to deploy to")
         .attribute(AttributeRule::new("name", Kind::Name, "its name").required())
         .attribute(AttributeRule::new("address", Kind::Text, "its address for ssh: user@host").required())

@@ -51,7 +51,7 @@ impl Table {
         let gaps = gap * widths.len().saturating_sub(1);
         // Names are divided only where folding between words is not enough.
         for divides in [false, true] {
-            let least = |column: usize| match column < self.first_number {
+            let min = |column: usize| match column < self.first_number {
                 true => widest(column, &|cell| longest(cell, divides)),
                 // Numbers stay whole, and their headers are folded.
                 false => {
@@ -59,9 +59,9 @@ impl Table {
                     numbers.chain([longest(&self.header[column], divides)]).max().unwrap_or_default()
                 }
             };
-            let least: Vec<usize> = (0..widths.len()).map(least).collect();
+            let min: Vec<usize> = (0..widths.len()).map(min).collect();
             while widths.iter().sum::<usize>() + gaps > limit {
-                let can_shrink = (0..widths.len()).filter(|&column| widths[column] > least[column]);
+                let can_shrink = (0..widths.len()).filter(|&column| widths[column] > min[column]);
                 let Some(column) = can_shrink.max_by_key(|&column| widths[column]) else { break };
                 widths[column] -= 1;
             }
@@ -197,12 +197,12 @@ ball                  Vision               1.25 ms";
         let narrow = topics().folded(42, 2);
         assert_eq!(narrow.width(2), 42);
         assert_eq!(narrow.rows[0][..2], [vec!["soccer/", "attack_status"], vec!["MotionController"]]);
-        let least = topics().folded(0, 2);
-        assert_eq!(least.widths, [7, 10, 7]);
-        assert_eq!(least.rows[0][0], ["soccer/", "attack_", "status"]);
-        assert_eq!(least.rows[0][1], ["Motion", "Controller"]);
+        let min = topics().folded(0, 2);
+        assert_eq!(min.widths, [7, 10, 7]);
+        assert_eq!(min.rows[0][0], ["soccer/", "attack_", "status"]);
+        assert_eq!(min.rows[0][1], ["Motion", "Controller"]);
         assert_eq!(
-            (&least.header[2][..], &least.rows[1][2][..]),
+            (&min.header[2][..], &min.rows[1][2][..]),
             (&["mean".into(), "cycle".into()][..], &["1.25 ms".into()][..])
         );
     }

@@ -40,7 +40,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let hub = Hub::with_linked_topics(role)?;
     let settings = LinkSettings::default();
     let settings = if is_robot {
-        LinkSettings { guests: true, ..settings }.sending("soccer/ball").receiving("soccer/command")
+        LinkSettings { accepts_unlinked: true, ..settings }.sending("soccer/ball").receiving("soccer/command")
     } else {
         settings.sending("soccer/command").receiving("soccer/ball")
     };

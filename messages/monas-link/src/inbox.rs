@@ -20,7 +20,7 @@ const MAX_BYTES: usize = 64 << 20;
 pub struct PacketInbox {
     content: Mutex<InboxState>,
     changed: Condvar,
-    taker: OnceLock<PacketCallback>,
+    callback: OnceLock<PacketCallback>,
 }
 
 /// Processes the queue on the receiving thread; returns `false` if it cannot now and the waiting
@@ -47,7 +47,7 @@ impl PacketInbox {
         content.bytes += size(&packet);
         content.packets.push_back(packet);
         drop(content);
-        if !self.taker.get().is_some_and(|take| take()) {
+        if !self.callback.get().is_some_and(|take| take()) {
             self.wake();
         }
     }
@@ -55,7 +55,7 @@ impl PacketInbox {
     /// Sets the callback that is called after each packet; can be set once.
     pub(crate) fn set_taker(&self, taker: PacketCallback) {
         // There is one link per inbox.
-        let _ = self.taker.set(taker);
+        let _ = self.callback.set(taker);
     }
 
     /// The next packet.

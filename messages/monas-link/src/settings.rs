@@ -21,7 +21,7 @@ pub struct LinkSettings {
     pub access: AccessList,
     /// Whether programs without a link may send: any client of the transport that knows the
     /// messages.
-    pub guests: bool,
+    pub accepts_unlinked: bool,
     /// The send budget.
     pub budget: Option<SendBudget>,
     /// Interval between heartbeats. States are equal on all sides two beats and two round trips
@@ -69,7 +69,7 @@ impl Default for LinkSettings {
             send: Vec::new(),
             receive: Vec::new(),
             access: AccessList::open(),
-            guests: false,
+            accepts_unlinked: false,
             budget: None,
             beat: Duration::from_millis(200),
         }
@@ -132,9 +132,10 @@ impl ResolvedSettings {
         }
         let (receive, publish_as) = receive.into_values().unzip();
         let host = if settings.name.is_empty() { hub.host().to_owned() } else { settings.name };
-        let LinkSettings { access, guests, budget, beat, .. } = settings;
+        let LinkSettings { access, accepts_unlinked: guests, budget, beat, .. } = settings;
         let send = send.into_values().collect();
-        let node = NodeSettings { host, incarnation, send, receive, access, guests, budget, beat };
+        let node =
+            NodeSettings { host, incarnation, send, receive, access, accepts_unlinked: guests, budget, beat };
         Ok(ResolvedSettings { node, publish_as })
     }
 }

@@ -205,7 +205,8 @@ fn a_topic_that_differs_is_not_read_and_both_sides_say_how() {
 #[test]
 fn bytes_that_are_no_message_any_more_or_never_were_are_refused_and_counted() {
     let hubs = hubs();
-    let settings = LinkSettings { guests: true, ..LinkSettings::default() }.receiving("soccer/ball");
+    let settings =
+        LinkSettings { accepts_unlinked: true, ..LinkSettings::default() }.receiving("soccer/ball");
     let mut end = HubBridge::new(&hubs[0], settings, 1).unwrap();
     let packet = |payload: MessageBytes| Packet {
         from: "laptop".into(),
@@ -237,7 +238,7 @@ fn bytes_that_are_no_message_any_more_or_never_were_are_refused_and_counted() {
 #[test]
 fn messages_under_a_links_own_name_are_rejected() {
     let hub = &hubs()[0];
-    let settings = LinkSettings { guests: true, name: "vision".into(), ..LinkSettings::default() };
+    let settings = LinkSettings { accepts_unlinked: true, name: "vision".into(), ..LinkSettings::default() };
     let mut end = HubBridge::new(hub, settings.receiving("soccer/ball"), 1).unwrap();
     let packet = |from: &str| Packet {
         from: from.into(),

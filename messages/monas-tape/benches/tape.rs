@@ -187,8 +187,8 @@ fn median(figures: &[f64]) -> f64 {
 }
 
 fn print_row(what: &str, figures: &[f64]) {
-    let least = figures.iter().copied().fold(f64::INFINITY, f64::min);
-    let most = figures.iter().copied().fold(0.0, f64::max);
-    println!("  {what:35} {:8.1} ({least:.1} to {most:.1})", median(figures));
+    let min = figures.iter().copied().fold(f64::INFINITY, f64::min);
+    let max = figures.iter().copied().fold(0.0, f64::max);
+    println!("  {what:35} {:8.1} ({min:.1} to {max:.1})", median(figures));
     io::stdout().flush().unwrap();
 }

@@ -163,7 +163,7 @@ const LINTS: &str =
 struct SchemaSet {
     set: FileDescriptorSet,
     /// The names of the requested files.
-    own: BTreeSet<String>,
+    requested: BTreeSet<String>,
     /// The paths of the files on disk.
     paths: Vec<PathBuf>,
 }
@@ -176,17 +176,24 @@ impl SchemaSet {
         compiler.open_files(protos).map_err(schema)?;
         let own = compiler.files().filter(|file| !file.is_import()).map(|file| file.name().to_owned());
         let paths = compiler.files().filter_map(|file| file.path()).map(Path::to_owned);
-        Ok(SchemaSet { own: own.collect(), paths: paths.collect(), set: compiler.file_descriptor_set() })
+        Ok(SchemaSet {
+            requested: own.collect(),
+            paths: paths.collect(),
+            set: compiler.file_descriptor_set(),
+        })
     }
 
     /// The packages of the requested files.
     fn packages(&self) -> Result<BTreeSet<String>, Error> {
-        let own = self.set.file.iter().filter(|file| self.own.contains(file.name()));
+        let own = self.set.file.iter().filter(|file| self.requested.contains(file.name()));
         own.map(|file| checked_package(file).map(str::to_owned)).collect()
     }
 
     fn own_files(&self, package: &str) -> impl Iterator<Item = &FileDescriptorProto> {
-        self.set.file.iter().filter(move |file| file.package() == package && self.own.contains(file.name()))
+        self.set
+            .file
+            .iter()
+            .filter(move |file| file.package() == package && self.requested.contains(file.name()))
     }
 
     /// The full names of all types, with a dot in front.

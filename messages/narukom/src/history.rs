@@ -13,7 +13,7 @@ pub(crate) struct History<'a> {
     samples: &'a VecDeque<AnySample>,
     /// The index of the first delivered message within the depth.
     first: usize,
-    own: Option<&'a Outbox>,
+    own_messages: Option<&'a Outbox>,
     /// The number of own messages beyond the depth.
     surplus: usize,
     /// Older messages are ignored.
@@ -41,13 +41,19 @@ impl<'a> History<'a> {
         let surplus = (samples.len() + own).saturating_sub(reading.limit());
         let (first, surplus) = (surplus.min(samples.len()), surplus.saturating_sub(samples.len()));
         let expired = if oldest == Timestamp::ZERO { 0 } else { before(samples, oldest) };
-        History { samples, first: first.max(expired), own: writing.filter(|_| own > 0), surplus, oldest }
+        History {
+            samples,
+            first: first.max(expired),
+            own_messages: writing.filter(|_| own > 0),
+            surplus,
+            oldest,
+        }
     }
 
     #[inline]
     fn own(&self) -> impl DoubleEndedIterator<Item = &'a AnySample> + use<'a> {
         let (oldest, surplus) = (self.oldest, self.surplus);
-        let own = self.own.into_iter().flat_map(move |writing| writing.visible_from(surplus));
+        let own = self.own_messages.into_iter().flat_map(move |writing| writing.visible_from(surplus));
         own.filter(move |sample| sample.header.local >= oldest)
     }
 
@@ -87,7 +93,7 @@ impl<'a> History<'a> {
     #[inline]
     fn last_before(&self, index: usize, moment: Timestamp) -> Option<&'a AnySample> {
         let delivered = if index > self.first { self.samples.get(index - 1) } else { None };
-        if self.own.is_none() {
+        if self.own_messages.is_none() {
             return delivered;
         }
         let own = self.own().rfind(|sample| sample.header.local <= moment);
@@ -99,7 +105,7 @@ impl<'a> History<'a> {
     #[inline]
     fn first_from(&self, index: usize, moment: Timestamp) -> Option<&'a AnySample> {
         let delivered = self.samples.get(index.max(self.first));
-        if self.own.is_none() {
+        if self.own_messages.is_none() {
             return delivered;
         }
         let own = self.own().find(|sample| sample.header.local >= moment);

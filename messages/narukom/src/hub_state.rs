@@ -54,7 +54,7 @@ pub(crate) struct HubState {
     topic_rings: Vec<TopicRings>,
     pub(crate) waker: Option<Arc<dyn Waker>>,
     /// The channels of the last publications, oldest first.
-    journal: VecDeque<Channel>,
+    recent_channels: VecDeque<Channel>,
     hosts: Vec<Arc<str>>,
     publishers: Vec<Arc<str>>,
     /// The number of publisher names that came from other hosts.
@@ -78,7 +78,7 @@ impl HubState {
             front: None,
             order: 0,
             topic_rings: topics.iter().map(rings).collect(),
-            journal: VecDeque::with_capacity(JOURNAL_LENGTH),
+            recent_channels: VecDeque::with_capacity(JOURNAL_LENGTH),
             hosts: vec![host],
             publishers: Vec::new(),
             remote_publishers: 0,
@@ -191,10 +191,10 @@ impl HubState {
 
     #[inline]
     fn note(&mut self, channel: Channel) {
-        if self.journal.len() == JOURNAL_LENGTH {
-            self.journal.pop_front();
+        if self.recent_channels.len() == JOURNAL_LENGTH {
+            self.recent_channels.pop_front();
         }
-        self.journal.push_back(channel);
+        self.recent_channels.push_back(channel);
     }
 
     /// The ring of a channel; `None` before the first message of another host.
@@ -240,15 +240,15 @@ impl HubState {
 
     /// The remembered publications with their numbers, in order.
     pub(crate) fn numbered_journal(&self) -> impl Iterator<Item = (u64, Channel)> {
-        (self.order + 1 - self.journal.len() as u64..).zip(self.journal.iter().copied())
+        (self.order + 1 - self.recent_channels.len() as u64..).zip(self.recent_channels.iter().copied())
     }
 
     /// The channels of the publications with numbers after `order`, if that many are remembered.
     #[inline]
     pub(crate) fn channels_since(&self, order: u64) -> Option<impl Iterator<Item = Channel>> {
         let count = usize::try_from(self.order - order).ok()?;
-        let start = self.journal.len().checked_sub(count)?;
-        Some(self.journal.range(start..).copied())
+        let start = self.recent_channels.len().checked_sub(count)?;
+        Some(self.recent_channels.range(start..).copied())
     }
 }
 

@@ -14,7 +14,7 @@ use crate::topic::{RetentionKind, TopicDeclaration};
 /// unpublished ones.
 pub(crate) struct Outbox {
     topic: TopicDeclaration,
-    own: VecDeque<PendingMessage>,
+    messages: VecDeque<PendingMessage>,
     published: usize,
     /// Whether the newest message is a draft, which edits change in place.
     draft: bool,
@@ -38,7 +38,7 @@ impl Outbox {
     pub(crate) fn new(topic: &TopicDeclaration) -> Outbox {
         Outbox {
             topic: *topic,
-            own: VecDeque::new(),
+            messages: VecDeque::new(),
             published: 0,
             draft: false,
             written: 0,
@@ -81,40 +81,40 @@ impl Outbox {
     pub(crate) fn visible_from(&self, first: usize) -> impl DoubleEndedIterator<Item = &AnySample> {
         let inherited = self.inherited.get(first..).unwrap_or_default();
         let index = self.hidden_count() + first.saturating_sub(self.inherited.len());
-        let own = self.own.range(index.min(self.own.len())..);
+        let own = self.messages.range(index.min(self.messages.len())..);
         inherited.iter().chain(own.map(|own| &own.sample))
     }
 
     /// The number of readable messages.
     #[inline]
     pub(crate) fn visible_count(&self) -> usize {
-        self.inherited.len() + self.own.len() - self.hidden_count()
+        self.inherited.len() + self.messages.len() - self.hidden_count()
     }
 
     /// The number of own messages that are not read. Own messages are numbered without gaps up to
     /// the last one written.
     #[inline]
     fn hidden_count(&self) -> usize {
-        let before = self.written - self.own.len() as u64;
-        (self.hidden.saturating_sub(before) as usize).min(self.own.len())
+        let before = self.written - self.messages.len() as u64;
+        (self.hidden.saturating_sub(before) as usize).min(self.messages.len())
     }
 
     /// Whether the end of the cycle has work to do here.
     #[inline]
     pub(crate) fn is_open(&self) -> bool {
-        !self.own.is_empty() || !self.inherited.is_empty()
+        !self.messages.is_empty() || !self.inherited.is_empty()
     }
 
     /// Adds a message to be published.
     pub(crate) fn write(&mut self, sample: AnySample) {
         self.written += 1;
-        self.own.push_back(PendingMessage { sample, nth: self.written });
+        self.messages.push_back(PendingMessage { sample, nth: self.written });
         self.draft = false;
     }
 
     /// Whether the newest message is a draft.
     pub(crate) fn has_draft(&self) -> bool {
-        self.draft && self.own.back().is_some_and(|own| own.nth > self.hidden)
+        self.draft && self.messages.back().is_some_and(|own| own.nth > self.hidden)
     }
 
     /// Adds a draft to be published: a copy of `source`, or a default message.
@@ -126,21 +126,21 @@ impl Outbox {
 
     /// Changes the draft in place, or in a copy if it has other readers.
     pub(crate) fn change_draft(&mut self, change: impl FnOnce(&mut dyn AnyMessage)) {
-        let Some(mut own) = self.own.pop_back() else { return };
+        let Some(mut own) = self.messages.pop_back() else { return };
         if Arc::get_mut(&mut own.sample.message).is_none() {
             own.sample.message = self.pool.copied(&self.topic, Some(&*own.sample.message));
         }
         if let Some(message) = Arc::get_mut(&mut own.sample.message) {
             change(message);
         }
-        self.own.push_back(own);
+        self.messages.push_back(own);
     }
 
     /// The next message to be published, and its number.
     pub(crate) fn take_next(&mut self) -> Option<(Arc<dyn AnyMessage>, u64)> {
-        let own = self.own.get(self.published)?;
+        let own = self.messages.get(self.published)?;
         self.published += 1;
-        self.draft &= self.published < self.own.len();
+        self.draft &= self.published < self.messages.len();
         Some((own.sample.message.clone(), own.nth))
     }
 
@@ -148,7 +148,7 @@ impl Outbox {
     /// hub's ring in exchange.
     pub(crate) fn complete(&mut self, nth: u64, header: Header, left: Option<Arc<dyn AnyMessage>>) {
         self.pool.take_back(left);
-        if let Some(own) = self.own.iter_mut().rev().find(|own| own.nth == nth) {
+        if let Some(own) = self.messages.iter_mut().rev().find(|own| own.nth == nth) {
             own.sample.header = header;
         }
         self.trim();
@@ -157,8 +157,8 @@ impl Outbox {
     /// Drops published messages that no read would return.
     fn trim(&mut self) {
         let kept = if self.topic.kind() == RetentionKind::State { 1 } else { self.topic.depth() };
-        while self.published > 0 && self.own.len() > kept {
-            self.own.pop_front();
+        while self.published > 0 && self.messages.len() > kept {
+            self.messages.pop_front();
             self.published -= 1;
         }
     }
@@ -167,7 +167,7 @@ impl Outbox {
     pub(crate) fn close(&mut self) {
         // One by one: most cycles publish one message, and the setup of a batch operation costs
         // more than that.
-        (0..std::mem::take(&mut self.published)).for_each(|_| drop(self.own.pop_front()));
+        (0..std::mem::take(&mut self.published)).for_each(|_| drop(self.messages.pop_front()));
         self.inherited.clear();
     }
 

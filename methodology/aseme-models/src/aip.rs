@@ -28,7 +28,7 @@ pub struct Participant {
     /// Its position in the source.
     pub position: TextPosition,
     /// The position of its formulas in the source.
-    pub liveness_place: TextPosition,
+    pub liveness_position: TextPosition,
 }
 
 /// A protocol.
@@ -58,7 +58,7 @@ static METAMODEL: Metamodel = Metamodel {
         Class {
             header: "Participant",
             feature: "participants",
-            least: 2,
+            min_count: 2,
             title: 0,
             features: &[
                 Feature::text("name"),
@@ -71,7 +71,7 @@ static METAMODEL: Metamodel = Metamodel {
         Class {
             header: "Protocol",
             feature: "protocols",
-            least: 1,
+            min_count: 1,
             title: 1,
             features: &[Feature::links("participants", PARTICIPANTS, 2, UNLIMITED), Feature::text("name")],
             subclasses: &[],
@@ -89,7 +89,7 @@ impl TypedModel for Aip {
             outcomes: object.text(2),
             liveness: object.text(3),
             position: object.position,
-            liveness_place: object.value_position(3),
+            liveness_position: object.value_position(3),
         };
         let protocol = |object: &Object| Protocol {
             participants: object.links(0).to_vec(),

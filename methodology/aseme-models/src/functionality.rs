@@ -45,7 +45,7 @@ static METAMODEL: Metamodel = Metamodel {
     classes: &[Class {
         header: "Activity",
         feature: "rows",
-        least: 0,
+        min_count: 0,
         title: 2,
         features: &[
             Feature::text("role"),

@@ -150,7 +150,7 @@ pub struct IacTransition {
     /// Its position in the source.
     pub position: TextPosition,
     /// The position of its expression in the source.
-    pub te_place: TextPosition,
+    pub te_position: TextPosition,
 }
 
 /// Settings of a transition, as in the section `Transitions:` of a role.

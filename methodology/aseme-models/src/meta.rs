@@ -42,7 +42,7 @@ pub(crate) struct Class {
     /// The feature of the root that holds its objects.
     pub(crate) feature: &'static str,
     /// The minimum number of objects.
-    pub(crate) least: usize,
+    pub(crate) min_count: usize,
     /// The feature written in the header, which names the object.
     pub(crate) title: usize,
     /// In the order of the metamodel.
@@ -72,7 +72,7 @@ pub(crate) enum FeatureKind {
     /// One of several words; the first is the default.
     Choice(&'static [&'static str]),
     /// Links to objects of a class.
-    Links { class: usize, least: usize, most: usize },
+    Links { class: usize, min: usize, max: usize },
     /// The opposite of a feature with links, which is derived: the class and the feature that link
     /// here.
     Opposite { class: usize, feature: usize },
@@ -131,8 +131,8 @@ impl Feature {
     }
 
     /// Links to objects of a class, with a minimum and maximum number.
-    pub(crate) const fn links(name: &'static str, class: usize, least: usize, most: usize) -> Feature {
-        Feature::new(name, name, FeatureKind::Links { class, least, most })
+    pub(crate) const fn links(name: &'static str, class: usize, min: usize, max: usize) -> Feature {
+        Feature::new(name, name, FeatureKind::Links { class, min, max })
     }
 
     /// The opposite of links.

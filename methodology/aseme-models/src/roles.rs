@@ -59,7 +59,7 @@ pub struct Role {
     /// Its position in the source.
     pub position: TextPosition,
     /// The position of its formulas in the source.
-    pub liveness_place: TextPosition,
+    pub liveness_position: TextPosition,
 }
 
 /// A functionality that implements activities: a library, a device, an algorithm.
@@ -93,7 +93,7 @@ static METAMODEL: Metamodel = Metamodel {
         Class {
             header: "Activity",
             feature: "activities",
-            least: 0,
+            min_count: 0,
             title: 0,
             features: &[Feature::text("name"), Feature::links("functionality", FUNCTIONALITIES, 1, 1)],
             subclasses: &[],
@@ -101,7 +101,7 @@ static METAMODEL: Metamodel = Metamodel {
         Class {
             header: "Capability",
             feature: "capabilities",
-            least: 0,
+            min_count: 0,
             title: 0,
             features: &[
                 Feature::text("name"),
@@ -115,7 +115,7 @@ static METAMODEL: Metamodel = Metamodel {
         Class {
             header: "Role",
             feature: "roles",
-            least: 1,
+            min_count: 1,
             title: 2,
             features: &[
                 Feature::links("role_activities", ACTIVITIES, 1, UNLIMITED)
@@ -130,7 +130,7 @@ static METAMODEL: Metamodel = Metamodel {
         Class {
             header: "Functionality",
             feature: "functionalities",
-            least: 1,
+            min_count: 1,
             title: 3,
             features: &[
                 Feature::text("permissions"),
@@ -203,7 +203,7 @@ fn role(object: &Object) -> Role {
         name: object.text(2),
         capabilities: object.links(3).to_vec(),
         position: object.position,
-        liveness_place: object.value_position(1),
+        liveness_position: object.value_position(1),
     }
 }
 

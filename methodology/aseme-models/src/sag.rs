@@ -49,7 +49,7 @@ static METAMODEL: Metamodel = Metamodel {
         Class {
             header: "Goal",
             feature: "goals",
-            least: 1,
+            min_count: 1,
             title: 1,
             features: &[
                 Feature::text("requirements"),
@@ -62,7 +62,7 @@ static METAMODEL: Metamodel = Metamodel {
         Class {
             header: "Actor",
             feature: "actors",
-            least: 1,
+            min_count: 1,
             title: 1,
             features: &[Feature::opposite("my_goal", GOALS, 2), Feature::text("name")],
             subclasses: &[],

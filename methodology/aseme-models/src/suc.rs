@@ -77,7 +77,7 @@ static METAMODEL: Metamodel = Metamodel {
         Class {
             header: "Role",
             feature: "roles",
-            least: 2,
+            min_count: 2,
             title: 1,
             features: &[
                 Feature::opposite("participates_in", USECASES, 0),
@@ -89,7 +89,7 @@ static METAMODEL: Metamodel = Metamodel {
         Class {
             header: "UseCase",
             feature: "usecases",
-            least: 1,
+            min_count: 1,
             title: 2,
             features: &[
                 Feature::links("participant", ROLES, 0, UNLIMITED).called("participants"),

@@ -83,8 +83,8 @@ impl Default for ProgressObserver {
 /// Counts the nodes and transitions that are checked before an exploration.
 pub(crate) struct CheckedParts<'a> {
     observer: &'a ProgressObserver,
-    done: Cell<usize>,
-    of: usize,
+    checked: Cell<usize>,
+    total: usize,
     is_stopped: Cell<bool>,
 }
 
@@ -92,14 +92,14 @@ impl<'a> CheckedParts<'a> {
     /// None yet of a number.
     pub(crate) fn new(settings: &'a CheckSettings, of: usize) -> CheckedParts<'a> {
         let (done, is_stopped) = (Cell::new(0), Cell::new(false));
-        CheckedParts { observer: &settings.observer, done, of, is_stopped }
+        CheckedParts { observer: &settings.observer, checked: done, total: of, is_stopped }
     }
 
     /// Counts some parts. Whether the observer lets the check go on.
     pub(crate) fn go_on_after(&self, parts: usize) -> bool {
-        let done = self.done.get() + parts;
-        self.done.set(done);
-        let progress = CheckProgress::Checking { done, of: self.of };
+        let done = self.checked.get() + parts;
+        self.checked.set(done);
+        let progress = CheckProgress::Checking { done, of: self.total };
         let is_stopped = self.is_stopped.get() || (self.observer.checking)(progress).is_break();
         self.is_stopped.set(is_stopped);
         !is_stopped

@@ -79,7 +79,7 @@ pub(crate) fn of_chart(iac: &Iac) -> (CheckedModel, Vec<Diagnostic>) {
     let literal = |position: TextPosition, text: &str| position.0.end - position.0.start == text.len();
     let guards = transitions().zip(chart.transitions()).map(|(it, (_, transition))| {
         let guard = transition.expression.guard.as_ref()?.span();
-        literal(it.te_place, &it.te).then_some(guard)
+        literal(it.te_position, &it.te).then_some(guard)
     });
     let spans = SourceSpans {
         nodes: iac.nodes.iter().map(|node| node.position.0).collect(),

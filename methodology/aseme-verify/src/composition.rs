@@ -309,9 +309,9 @@ fn channel_overflow(product: &GlobalProduct<'_>, passage: usize, edge: usize, ch
         Some(&MessageUse::Node(node)) => robot.subject.spans.node(node),
         None => Span::default(),
     };
-    let most = channels.capacity;
+    let max = channels.capacity;
     let message = format!(
-        "`{from}` may send more than {most} messages before `{to}` receives the first: `{name}` is lost then"
+        "`{from}` may send more than {max} messages before `{to}` receives the first: `{name}` is lost then"
     );
     let found = Diagnostic::warning("E0932", span, message);
     let hint = "wait for an answer before sending the next one, or enlarge the channel (`--channel`)";

@@ -48,11 +48,11 @@ pub fn refine_placed(
     let (besides, own): (Vec<usize>, Vec<usize>) = (0..entries.len()).partition(|&index| entries[index].also);
     let plain = chart.clone();
     let lookup = Lookup::new(&plain);
-    let wishes: Vec<RefinementTarget<TransitionId>> =
+    let targets: Vec<RefinementTarget<TransitionId>> =
         own.iter().map(|&index| transitions_of(&lookup, &entries[index])).collect();
-    let (chosen, mut unmatched) = assign_entries(&wishes, |id| lookup.transition_text(*id));
+    let (chosen, mut unmatched) = assign_entries(&targets, |id| lookup.transition_text(*id));
     let mut chosen: BTreeMap<TransitionId, usize> =
-        chosen.into_iter().map(|(id, wish)| (id, own[wish])).collect();
+        chosen.into_iter().map(|(id, target)| (id, own[target])).collect();
     for (&id, &index) in &chosen {
         entries[index].apply(chart, id);
     }
@@ -72,9 +72,9 @@ fn apply_to_transitions(
     lookup: &Lookup<'_>,
     entry: &TransitionEntry,
 ) -> Result<Vec<TransitionId>, Box<UnmatchedEntry>> {
-    let wish = transitions_of(lookup, entry);
-    if wish.is_ambiguous_or_unmatched() {
-        return Err(Box::new(unmatched_entry(&wish, |id| lookup.transition_text(*id))));
+    let target = transitions_of(lookup, entry);
+    if target.is_ambiguous_or_unmatched() {
+        return Err(Box::new(unmatched_entry(&target, |id| lookup.transition_text(*id))));
     }
     let add = |id: TransitionId| {
         let Transition { source, target, .. } = *chart.transition(id);
@@ -82,16 +82,16 @@ fn apply_to_transitions(
         entry.apply(chart, added);
         added
     };
-    Ok(wish.named.into_iter().map(add).collect())
+    Ok(target.named.into_iter().map(add).collect())
 }
 
 /// Applies entries to the states of a chart; entries that do not match are returned, in order.
 pub fn refine_states(chart: &mut Statechart, entries: &[StateEntry]) -> Vec<UnmatchedEntry> {
     let plain = chart.clone();
     let lookup = Lookup::new(&plain);
-    let wishes: Vec<RefinementTarget<NodeId>> =
+    let targets: Vec<RefinementTarget<NodeId>> =
         entries.iter().map(|entry| states_of(&lookup, entry)).collect();
-    let (chosen, mut unmatched) = assign_entries(&wishes, |id| lookup.node_text(*id));
+    let (chosen, mut unmatched) = assign_entries(&targets, |id| lookup.node_text(*id));
     for (id, index) in chosen {
         let misfit: Option<fn(&RefinementTarget<'_, NodeId>, String) -> UnmatchedEntry> =
             match chart.node(id).kind {
@@ -100,7 +100,7 @@ pub fn refine_states(chart: &mut Statechart, entries: &[StateEntry]) -> Vec<Unma
                 _ => entries[index].is_about_activity().then_some(composite),
             };
         match misfit {
-            Some(misfit) => unmatched.push(misfit(&wishes[index], path::shortest_path(chart, id))),
+            Some(misfit) => unmatched.push(misfit(&targets[index], path::shortest_path(chart, id))),
             None => entries[index].apply(chart, id),
         }
     }
@@ -224,25 +224,25 @@ fn similar_transitions(chart: &Statechart, source: &Path, target: &Path) -> Vec<
 
 /// Assigns entries to elements. Also returns the unmatched entries, in order.
 fn assign_entries<Id: Copy + Ord>(
-    wishes: &[RefinementTarget<'_, Id>],
+    targets: &[RefinementTarget<'_, Id>],
     text_of: impl Fn(&Id) -> String,
 ) -> (BTreeMap<Id, usize>, Vec<UnmatchedEntry>) {
     let mut chosen = BTreeMap::new();
     let mut unmatched = BTreeMap::new();
     let (wild, plain): (Vec<usize>, Vec<usize>) =
-        (0..wishes.len()).partition(|&index| wishes[index].has_wildcard);
+        (0..targets.len()).partition(|&index| targets[index].has_wildcard);
     for index in plain.into_iter().chain(wild) {
-        let wish = &wishes[index];
-        if wish.is_ambiguous_or_unmatched() {
-            unmatched.insert(index, unmatched_entry(wish, &text_of));
+        let target = &targets[index];
+        if target.is_ambiguous_or_unmatched() {
+            unmatched.insert(index, unmatched_entry(target, &text_of));
             continue;
         }
-        for id in &wish.named {
+        for id in &target.named {
             let earlier: usize = *chosen.entry(*id).or_insert(index);
-            if earlier != index && wishes[earlier].has_wildcard == wish.has_wildcard {
+            if earlier != index && targets[earlier].has_wildcard == target.has_wildcard {
                 unmatched
                     .entry(index)
-                    .or_insert_with(|| duplicate_entry(wish, &wishes[earlier], &text_of(id)));
+                    .or_insert_with(|| duplicate_entry(target, &targets[earlier], &text_of(id)));
             }
         }
     }
@@ -250,18 +250,18 @@ fn assign_entries<Id: Copy + Ord>(
 }
 
 /// The report for an entry that matches nothing, or several elements without a wildcard.
-fn unmatched_entry<Id>(wish: &RefinementTarget<'_, Id>, text_of: impl Fn(&Id) -> String) -> UnmatchedEntry {
-    let (code, number, candidates) = match wish.named.len() {
-        0 => ("E0250", "no", wish.near.clone()),
-        _ => ("E0251", "more than one", wish.named.iter().take(MAX_CANDIDATES).map(text_of).collect()),
+fn unmatched_entry<Id>(target: &RefinementTarget<'_, Id>, text_of: impl Fn(&Id) -> String) -> UnmatchedEntry {
+    let (code, number, candidates) = match target.named.len() {
+        0 => ("E0250", "no", target.near.clone()),
+        _ => ("E0251", "more than one", target.named.iter().take(MAX_CANDIDATES).map(text_of).collect()),
     };
-    let message = format!("`{}` names {number} {} of the chart", wish.text, wish.kind);
-    let diagnostic = Diagnostic::error(code, wish.span, message);
+    let message = format!("`{}` names {number} {} of the chart", target.text, target.kind);
+    let diagnostic = Diagnostic::error(code, target.span, message);
     let diagnostic = match hint(&candidates) {
         Some(hint) => diagnostic.with_hint(hint),
         None => diagnostic,
     };
-    UnmatchedEntry { text: wish.text.into(), candidates, diagnostic }
+    UnmatchedEntry { text: target.text.into(), candidates, diagnostic }
 }
 
 fn hint(candidates: &[String]) -> Option<String> {
@@ -281,28 +281,28 @@ fn hint(candidates: &[String]) -> Option<String> {
 
 /// The report for an entry whose element already has one.
 fn duplicate_entry<Id>(
-    wish: &RefinementTarget<'_, Id>,
+    target: &RefinementTarget<'_, Id>,
     earlier: &RefinementTarget<'_, Id>,
     named: &str,
 ) -> UnmatchedEntry {
-    let message = format!("`{}` and `{}` both refer to `{named}`", wish.text, earlier.text);
-    let diagnostic = Diagnostic::error("E0252", wish.span, message).with_hint("keep one of the two");
-    UnmatchedEntry { text: wish.text.into(), candidates: vec![named.into()], diagnostic }
+    let message = format!("`{}` and `{}` both refer to `{named}`", target.text, earlier.text);
+    let diagnostic = Diagnostic::error("E0252", target.span, message).with_hint("keep one of the two");
+    UnmatchedEntry { text: target.text.into(), candidates: vec![named.into()], diagnostic }
 }
 
 /// The report for an entry that sets an activity, or an attribute of one, on a composite.
-fn composite(wish: &RefinementTarget<'_, NodeId>, named: String) -> UnmatchedEntry {
+fn composite(target: &RefinementTarget<'_, NodeId>, named: String) -> UnmatchedEntry {
     let message = format!("`{named}` consists of other states and runs no activity of its own");
-    let diagnostic = Diagnostic::error("E0253", wish.span, message);
+    let diagnostic = Diagnostic::error("E0253", target.span, message);
     let diagnostic =
         diagnostic.with_hint("activity, priority and duration belong to states without children");
-    UnmatchedEntry { text: wish.text.into(), candidates: vec![named], diagnostic }
+    UnmatchedEntry { text: target.text.into(), candidates: vec![named], diagnostic }
 }
 
 /// The report for an entry that sets a history on a state without children.
-fn childless(wish: &RefinementTarget<'_, NodeId>, named: String) -> UnmatchedEntry {
+fn childless(target: &RefinementTarget<'_, NodeId>, named: String) -> UnmatchedEntry {
     let message = format!("`{named}` has no states inside");
-    let diagnostic = Diagnostic::error("E0254", wish.span, message);
+    let diagnostic = Diagnostic::error("E0254", target.span, message);
     let diagnostic = diagnostic.with_hint("history belongs to composites");
-    UnmatchedEntry { text: wish.text.into(), candidates: vec![named], diagnostic }
+    UnmatchedEntry { text: target.text.into(), candidates: vec![named], diagnostic }
 }

@@ -95,12 +95,8 @@ impl OptionKind {
         match *self {
             OptionKind::Name => !value.is_empty() && value.bytes().all(is_of_name),
             OptionKind::Word(words) => words.contains(&value),
-            OptionKind::Whole(least, most) => {
-                value.parse().is_ok_and(|number| (least..=most).contains(&number))
-            }
-            OptionKind::Number(least, most) => {
-                value.parse().is_ok_and(|number| (least..=most).contains(&number))
-            }
+            OptionKind::Whole(min, max) => value.parse().is_ok_and(|number| (min..=max).contains(&number)),
+            OptionKind::Number(min, max) => value.parse().is_ok_and(|number| (min..=max).contains(&number)),
             OptionKind::Flag => matches!(value, "0" | "1" | "false" | "true"),
             OptionKind::Text | OptionKind::File | OptionKind::Poses(_) | OptionKind::Anatomy(_) => {
                 !value.is_empty()
@@ -115,8 +111,8 @@ impl OptionKind {
             OptionKind::Word(words) => {
                 words.iter().map(|word| format!("`{word}`")).collect::<Vec<_>>().join(" or ")
             }
-            OptionKind::Whole(least, most) => format!("a whole number from {least} to {most}"),
-            OptionKind::Number(least, most) => format!("a number from {least} to {most}"),
+            OptionKind::Whole(min, max) => format!("a whole number from {min} to {max}"),
+            OptionKind::Number(min, max) => format!("a number from {min} to {max}"),
             OptionKind::Flag => "`0` or `1`".to_owned(),
             OptionKind::File | OptionKind::Poses(_) | OptionKind::Anatomy(_) => {
                 "the path of a file".to_owned()

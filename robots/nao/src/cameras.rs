@@ -20,9 +20,10 @@ pub(crate) const BOTTOM_OPTION: &str = "camera_bottom";
 pub(crate) const TURNED_OPTION: &str = "camera_top_turned";
 pub(crate) const TODAY_OPTION: &str = "objects_of_today";
 
-/// The poses of the cameras on the body; by default those of a Nao V6.
+/// The cameras of a body: devices, mounting and the appearance of objects; by default those of a
+/// Nao V6.
 #[derive(Clone, PartialEq, Eq, Debug)]
-pub struct CameraPlaces {
+pub struct CameraConfig {
     /// The device of the upper camera.
     pub top: PathBuf,
     /// The device of the lower camera.
@@ -34,9 +35,9 @@ pub struct CameraPlaces {
     pub objects: ObjectSet,
 }
 
-impl Default for CameraPlaces {
-    fn default() -> CameraPlaces {
-        CameraPlaces {
+impl Default for CameraConfig {
+    fn default() -> CameraConfig {
+        CameraConfig {
             top: "/dev/video-top".into(),
             bottom: "/dev/video-bottom".into(),
             is_top_turned: true,
@@ -45,11 +46,11 @@ impl Default for CameraPlaces {
     }
 }
 
-impl CameraPlaces {
+impl CameraConfig {
     /// Reads the options of a configuration.
-    pub(crate) fn of(options: &BTreeMap<String, String>) -> CameraPlaces {
-        let usual = CameraPlaces::default();
-        CameraPlaces {
+    pub(crate) fn of(options: &BTreeMap<String, String>) -> CameraConfig {
+        let usual = CameraConfig::default();
+        CameraConfig {
             top: options.get(TOP_OPTION).map_or(usual.top, PathBuf::from),
             bottom: options.get(BOTTOM_OPTION).map_or(usual.bottom, PathBuf::from),
             is_top_turned: options.get(TURNED_OPTION).is_none_or(|flag| flag != "0"),
@@ -127,7 +128,7 @@ impl Cameras {
     ///
     /// # Errors
     /// The system cannot create a thread.
-    pub(crate) fn start(settings: &CameraPlaces) -> Result<Cameras, Error> {
+    pub(crate) fn start(settings: &CameraConfig) -> Result<Cameras, Error> {
         let thread = |name, path: &Path, is_turned| {
             let path = path.to_owned();
             CameraThread::start(name, move || {
@@ -319,8 +320,8 @@ mod tests {
     fn missing_cameras_are_named_with_their_options() {
         let options = [(TOP_OPTION, "/dev/null"), (BOTTOM_OPTION, "/nowhere/camera"), (TURNED_OPTION, "0")];
         let options = options.map(|(name, value)| (name.to_owned(), value.to_owned())).into();
-        let settings = CameraPlaces::of(&options);
-        assert!(!settings.is_top_turned && CameraPlaces::default().is_top_turned);
+        let settings = CameraConfig::of(&options);
+        assert!(!settings.is_top_turned && CameraConfig::default().is_top_turned);
         let [top, bottom] = &settings.missing()[..] else { panic!("{:?}", settings.missing()) };
         let sees_nothing = "the robot sees nothing with its";
         assert_eq!(
@@ -340,7 +341,7 @@ mod tests {
     #[test]
     fn missing_cameras_deliver_nothing_and_do_not_stop_the_body() {
         let settings =
-            CameraPlaces { top: "/dev/null".into(), bottom: "/nowhere".into(), ..CameraPlaces::default() };
+            CameraConfig { top: "/dev/null".into(), bottom: "/nowhere".into(), ..CameraConfig::default() };
         let mut cameras = Cameras::start(&settings).unwrap();
         assert_eq!(cameras.take(Timestamp::from_nanos(5), &stand()), None);
     }

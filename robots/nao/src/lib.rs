@@ -60,7 +60,7 @@ use monas_robot::{
 };
 
 pub use anatomy::{NaoJoint, anatomy, links};
-pub use cameras::CameraPlaces;
+pub use cameras::CameraConfig;
 pub use error::{Error, ErrorKind};
 pub use nao::Nao;
 pub use served_nao::ServedNao;
@@ -90,7 +90,7 @@ fn limits(settings: &BodySettings, surroundings: BodyEnvironment) -> Vec<BodyLim
             SIGHTINGS.path(),
             "the robot sees nothing: its cameras deliver images, with `vision=\"images\"`",
         )],
-        CameraOutput::Images => CameraPlaces::of(&settings.options)
+        CameraOutput::Images => CameraConfig::of(&settings.options)
             .missing()
             .into_iter()
             .map(|effect| BodyLimit::found(IMAGES.path(), effect))
@@ -129,7 +129,7 @@ fn open(site: BodySite) -> Result<Box<dyn Robot>, monas_robot::Error> {
         }
         BodySite { address, options, .. } => {
             let path = Path::new(address.as_deref().unwrap_or(lola::SOCKET));
-            Ok(Box::new(Nao::connect(path, control)?.with_cameras(CameraPlaces::of(&options))))
+            Ok(Box::new(Nao::connect(path, control)?.with_cameras(CameraConfig::of(&options))))
         }
     }
 }

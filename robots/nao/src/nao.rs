@@ -9,7 +9,7 @@ use std::time::Duration;
 use monas_robot::{Actuators, Anatomy, Error, ErrorKind, JointCommands, Leds, Percepts, Robot};
 use narukom::Timestamp;
 
-use crate::cameras::{self, CameraPlaces, Cameras};
+use crate::cameras::{self, CameraConfig, Cameras};
 use crate::control::NaoControl;
 use crate::lola::SensorPacket;
 use crate::side_channels::RobotChannels;
@@ -35,7 +35,7 @@ pub struct Nao {
     anatomy: Anatomy,
     shared: Arc<SharedControl>,
     channels: Option<RobotChannels>,
-    camera_places: CameraPlaces,
+    camera_config: CameraConfig,
     /// The cameras, if they deliver images.
     cameras: Option<Cameras>,
     measured_at: Timestamp,
@@ -55,7 +55,7 @@ struct ControlState {
     is_new: bool,
     /// Cycles since the last call of `sense`; none before the first, which may come long after the
     /// body is opened: a run begins when all its links are connected.
-    unattended: Option<u32>,
+    cycles_since_sense: Option<u32>,
     ends: bool,
     has_ended: bool,
 }
@@ -87,7 +87,7 @@ impl Nao {
             control,
             is_connected: false,
             is_new: false,
-            unattended: None,
+            cycles_since_sense: None,
             ends: false,
             has_ended: false,
         };
@@ -106,7 +106,7 @@ impl Nao {
             anatomy,
             shared,
             channels: None,
-            camera_places: CameraPlaces::default(),
+            camera_config: CameraConfig::default(),
             cameras: None,
             measured_at: Timestamp::ZERO,
             thread: Some(thread),
@@ -123,8 +123,8 @@ impl Nao {
     /// The body with other camera devices than those of a Nao V6. They are opened by
     /// [`deliver_images`](Robot::deliver_images), unless a simulation delivers images.
     #[must_use]
-    pub fn with_cameras(mut self, camera_places: CameraPlaces) -> Nao {
-        self.camera_places = camera_places;
+    pub fn with_cameras(mut self, camera_config: CameraConfig) -> Nao {
+        self.camera_config = camera_config;
         self
     }
 }
@@ -162,8 +162,8 @@ impl SharedControl {
             state.control.receive(&sensors);
             state.is_connected = true;
             state.is_new = true;
-            state.unattended = state.unattended.map(|cycles| cycles.saturating_add(1));
-            if state.ends || state.unattended.is_some_and(|cycles| cycles > LOST_AFTER) {
+            state.cycles_since_sense = state.cycles_since_sense.map(|cycles| cycles.saturating_add(1));
+            if state.ends || state.cycles_since_sense.is_some_and(|cycles| cycles > LOST_AFTER) {
                 state.control.rest();
             }
             state.control.actuators().encode(&mut bytes);
@@ -186,7 +186,7 @@ impl Robot for Nao {
 
     fn sense(&mut self, now: Timestamp, percepts: &mut Percepts) -> Result<(), Error> {
         let mut state = self.shared.lock();
-        state.unattended = Some(0);
+        state.cycles_since_sense = Some(0);
         if std::mem::take(&mut state.is_new) {
             self.measured_at = now;
         }
@@ -210,7 +210,7 @@ impl Robot for Nao {
     fn deliver_images(&mut self, width: Option<u32>) -> Result<(), Error> {
         if self.channels.is_none() {
             cameras::check_width(width)?;
-            self.cameras = Some(Cameras::start(&self.camera_places)?);
+            self.cameras = Some(Cameras::start(&self.camera_config)?);
         }
         Ok(())
     }

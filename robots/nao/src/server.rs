@@ -124,8 +124,8 @@ impl LolaServer {
         for joint in 0..JOINTS {
             if self.actuators.stiffness[joint] > 0.0 {
                 let target = limits(joint).clamp(self.actuators.position[joint].into());
-                let most = MOTOR_SPEED * CYCLE_SECONDS;
-                self.angles[joint] += (target - self.angles[joint]).clamp(-most, most);
+                let max = MOTOR_SPEED * CYCLE_SECONDS;
+                self.angles[joint] += (target - self.angles[joint]).clamp(-max, max);
             }
         }
     }

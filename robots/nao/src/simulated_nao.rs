@@ -101,9 +101,9 @@ impl Robot for SimulatedNao {
 }
 
 /// Sends a radio message that is not too long.
-pub(crate) fn say(channels: &mut RobotChannels, most: usize, words: &[u8]) -> Result<(), Error> {
-    if words.len() > most {
-        let message = format!("{} bytes are more than the {most} of a message", words.len());
+pub(crate) fn say(channels: &mut RobotChannels, max: usize, words: &[u8]) -> Result<(), Error> {
+    if words.len() > max {
+        let message = format!("{} bytes are more than the {max} of a message", words.len());
         return Err(Error::new(monas_robot::ErrorKind::Protocol, message));
     }
     Ok(channels.say(words)?)

@@ -284,11 +284,11 @@ mod tests {
         #![proptest_config(ProptestConfig { cases: 24, ..ProptestConfig::default() })]
         #[test]
         fn every_target_is_within_the_limits(
-            wishes in prop::collection::vec((-1.0..1.0, -1.0..1.0, -3.0..3.0, 1..60_usize), 1..8),
+            velocities in prop::collection::vec((-1.0..1.0, -1.0..1.0, -3.0..3.0, 1..60_usize), 1..8),
         ) {
             let mut engine = SteppingWalk::default();
             let mut angles = [0.0; JOINTS];
-            for (x, y, turn, cycles) in wishes {
+            for (x, y, turn, cycles) in velocities {
                 for _ in 0..cycles {
                     engine.advance(WalkVelocity { x, y, turn }, CYCLE_SECONDS, &mut angles);
                     for (joint, &target) in angles.iter().enumerate().skip(Side::Left.leg() - 1).take(11) {

@@ -132,8 +132,8 @@ fn legs_carry_the_robot_of_the_field() {
         assert!((seen - felt.position).norm() < 0.25, "{seen} {}", felt.position);
         assert!((turned - felt.heading).abs() < 0.4, "{turned} {}", felt.heading);
         // Four seconds less the time to reach the speed.
-        let least = if turn == 0.0 { 3.7 * x.max(y) } else { 0.3 };
-        assert!(felt.position.norm() > least && felt.heading >= 3.7 * turn, "{felt:?}");
+        let min = if turn == 0.0 { 3.7 * x.max(y) } else { 0.3 };
+        assert!(felt.position.norm() > min && felt.heading >= 3.7 * turn, "{felt:?}");
         trial.run(4.0, Actuators::default());
         assert_eq!(trial.posture(), Posture::Standing);
     }

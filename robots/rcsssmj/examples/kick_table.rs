@@ -50,11 +50,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let falls = kicks.iter().filter(|kick| kick.fell).count();
         let hits: Vec<&Kicked> = kicks.iter().filter(|kick| kick.distance > 0.5).collect();
         let range = |of: fn(&Kicked) -> f64| {
-            let (mut least, mut most, mut sum) = (f64::INFINITY, f64::NEG_INFINITY, 0.0);
+            let (mut min, mut max, mut sum) = (f64::INFINITY, f64::NEG_INFINITY, 0.0);
             for value in hits.iter().map(|kick| of(kick)) {
-                (least, most, sum) = (least.min(value), most.max(value), sum + value);
+                (min, max, sum) = (min.min(value), max.max(value), sum + value);
             }
-            format!("{:.1} ({least:.1} to {most:.1})", sum / hits.len().max(1) as f64)
+            format!("{:.1} ({min:.1} to {max:.1})", sum / hits.len().max(1) as f64)
         };
         let (distance, speed) = (range(|kick| kick.distance), range(|kick| kick.speed));
         let direction = range(|kick| kick.direction.to_degrees());

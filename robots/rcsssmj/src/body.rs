@@ -51,7 +51,7 @@ pub struct Booster {
     lockstep: bool,
     pick_up: bool,
     /// Whether a received message of the server still has to be answered.
-    owes_answer: bool,
+    must_reply: bool,
     measured_at: Timestamp,
     /// Cycles since the robot fell.
     lying: u32,
@@ -96,7 +96,7 @@ impl Booster {
             message: Effectors::default(),
             lockstep,
             pick_up: options.pick_up,
-            owes_answer: false,
+            must_reply: false,
             measured_at: Timestamp::ZERO,
             lying: 0,
             before: [0.0; 3],
@@ -220,7 +220,7 @@ impl Booster {
     /// Adds the commands to the motors to the message, and sends it.
     fn answer(&mut self) -> Result<(), Error> {
         self.control.advance(&mut self.message);
-        self.owes_answer = false;
+        self.must_reply = false;
         self.connection.send(self.message.as_bytes())
     }
 
@@ -232,7 +232,7 @@ impl Booster {
     }
 
     fn received(&mut self) -> Result<(), Error> {
-        self.owes_answer = true;
+        self.must_reply = true;
         if let Some(monitor) = &mut self.monitor {
             monitor.drain()?;
         }
@@ -279,7 +279,7 @@ impl Booster {
         if self.lockstep {
             // The latest percepts are as old as the call before.
             self.measured_at = now;
-            return if self.owes_answer { self.exchange() } else { self.receive() };
+            return if self.must_reply { self.exchange() } else { self.receive() };
         }
         let (control, rules) = (&mut self.control, &self.rules);
         let mut arrived = false;
@@ -292,7 +292,7 @@ impl Booster {
             self.received()?;
         }
         self.message.clear();
-        if std::mem::take(&mut self.owes_answer) { self.answer() } else { Ok(()) }
+        if std::mem::take(&mut self.must_reply) { self.answer() } else { Ok(()) }
     }
 }
 

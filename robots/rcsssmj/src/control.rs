@@ -234,9 +234,9 @@ impl BoosterControl {
         let robot = self.robot;
         for (joint, motor) in self.motors.iter_mut().enumerate().take(robot.joint_count()) {
             if let Some((angle, stiffness)) = self.targets.of(joint) {
-                let (most, damping) = robot.gains(joint);
+                let (max, damping) = robot.gains(joint);
                 *motor =
-                    MotorCommand { angle, stiffness: stiffness * most, damping, ..MotorCommand::default() };
+                    MotorCommand { angle, stiffness: stiffness * max, damping, ..MotorCommand::default() };
             }
         }
     }

@@ -61,7 +61,7 @@ pub struct Kick {
 /// The progress of the phases of a kick, each from 0 to 1.
 struct Progress {
     /// The weight of the kick's motor commands against those of the walk.
-    own: f64,
+    kick_weight: f64,
     shift: f64,
     lift: f64,
     swing: f64,
@@ -85,7 +85,7 @@ impl Kick {
         let robot = self.robot;
         let moved = robot.waist.unwrap_or(robot.left_leg)..robot.joint_count();
         for (joint, motor) in motors.iter_mut().enumerate().take(moved.end).skip(moved.start) {
-            let mix = |from: f64, to: f64| from + (to - from) * progress.own;
+            let mix = |from: f64, to: f64| from + (to - from) * progress.kick_weight;
             let (stiffness, damping) = match joint < robot.left_leg {
                 true => (motor.stiffness, motor.damping),
                 false => (mix(motor.stiffness, stiffness), mix(motor.damping, damping)),
@@ -113,7 +113,7 @@ impl Kick {
         let unshifted = part(kick.unshifting);
         let given = part(kick.blending);
         (given < 1.0).then(|| Progress {
-            own: smooth(taken) - smooth(given),
+            kick_weight: smooth(taken) - smooth(given),
             shift: smooth(shifted) - smooth(unshifted),
             lift: smooth(lifted),
             swing: swung,

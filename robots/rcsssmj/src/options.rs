@@ -187,11 +187,11 @@ fn check_address(name: &'static str, address: &str) -> Result<(), BodyFault> {
     }
 }
 
-fn check_range(name: &'static str, value: f64, least: f64, most: f64) -> Result<(), BodyFault> {
-    match (least..=most).contains(&value) {
+fn check_range(name: &'static str, value: f64, min: f64, max: f64) -> Result<(), BodyFault> {
+    match (min..=max).contains(&value) {
         true => Ok(()),
         false => {
-            let message = format!("`{name}` is `{value}`, expected {least} to {most} on this field");
+            let message = format!("`{name}` is `{value}`, expected {min} to {max} on this field");
             Err(BodyFault::new(name, message))
         }
     }

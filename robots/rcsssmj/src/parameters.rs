@@ -39,10 +39,10 @@ macro_rules! parameters {
             /// Sets a parameter by its name, clamped to its range. Returns whether there is such a
             /// one.
             pub fn set(&mut self, name: &str, value: f64) -> bool {
-                let Some((_, least, most, _)) = $type::ROWS.iter().find(|row| row.0 == name) else {
+                let Some((_, min, max, _)) = $type::ROWS.iter().find(|row| row.0 == name) else {
                     return false;
                 };
-                let value = value.clamp(*least, *most);
+                let value = value.clamp(*min, *max);
                 match name {
                     $(stringify!($name) => self.$name = value,)*
                     _ => return false,
@@ -82,14 +82,14 @@ pub(crate) fn read(text: &str, rows: &[Row], mut set: impl FnMut(&str, f64)) -> 
     if let Some(unknown) = names.into_iter().find(is_unknown) {
         return Err(format!("there is no parameter `{unknown}`"));
     }
-    for (name, least, most, _) in rows {
+    for (name, min, max, _) in rows {
         let value = table.get_ref().get(*name).map(|value| value.get_ref());
-        set(name, in_range(value, *least, *most).map_err(|what| format!("`{name}` {what}"))?);
+        set(name, in_range(value, *min, *max).map_err(|what| format!("`{name}` {what}"))?);
     }
     Ok(())
 }
 
-fn in_range(value: Option<&DeValue<'_>>, least: f64, most: f64) -> Result<f64, String> {
+fn in_range(value: Option<&DeValue<'_>>, min: f64, max: f64) -> Result<f64, String> {
     let text = match value {
         Some(DeValue::Float(number)) => number.as_str(),
         Some(DeValue::Integer(number)) => number.as_str(),
@@ -97,7 +97,7 @@ fn in_range(value: Option<&DeValue<'_>>, least: f64, most: f64) -> Result<f64, S
         None => return Err("is missing".into()),
     };
     match text.parse() {
-        Ok(number) if (least..=most).contains(&number) => Ok(number),
-        _ => Err(format!("is {text}, expected {least} to {most}")),
+        Ok(number) if (min..=max).contains(&number) => Ok(number),
+        _ => Err(format!("is {text}, expected {min} to {max}")),
     }
 }

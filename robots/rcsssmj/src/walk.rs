@@ -100,8 +100,8 @@ impl Ramp {
     }
 }
 
-fn approach(value: &mut f64, wanted: f64, most: f64) {
-    *value += (wanted - *value).clamp(-most, most);
+fn approach(value: &mut f64, wanted: f64, max: f64) {
+    *value += (wanted - *value).clamp(-max, max);
 }
 
 #[cfg(test)]

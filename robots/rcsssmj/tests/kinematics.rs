@@ -80,8 +80,7 @@ fn compare(robot: &Humanoid) {
             ];
             (own[point] - truth[point]).norm()
         });
-        let (sum, greatest) =
-            errors.fold((0.0, 0.0_f64), |(sum, most), error| (sum + error, most.max(error)));
+        let (sum, greatest) = errors.fold((0.0, 0.0_f64), |(sum, max), error| (sum + error, max.max(error)));
         println!("| {name} | {:.4} | {:.4} |", 1e6 * sum / POSTURES as f64, 1e6 * greatest);
         assert!(greatest < BOUND, "{} {name}: {greatest} m", robot.name());
     }

@@ -52,7 +52,7 @@ impl LinkReader<'_> {
         let is_zenoh = values.word("transport", &[("local", false), ("zenoh", true)]).unwrap_or(false);
         let mut draft = PartialLink::default();
         draft.settings.name = values.text("name").unwrap_or_default().to_owned();
-        draft.settings.guests = values.flag("guests").unwrap_or_default();
+        draft.settings.accepts_unlinked = values.flag("guests").unwrap_or_default();
         if let Some(beat) = values.duration("beat") {
             draft.settings.beat = beat;
         }

@@ -136,7 +136,7 @@ fn grammar() -> Grammar {
     };
     let types = Kind::Word(tree::TYPES.map(|(word, _)| word).to_vec());
     let skills = Kind::Word(SKILLS.map(|(word, _)| word).to_vec());
-    let cycle = Kind::Duration { least: std::time::Duration::from_micros(100) };
+    let cycle = Kind::Duration { min: std::time::Duration::from_micros(100) };
     Grammar::default()
         .root(
             ElementRule::new("robot", "a robot")

@@ -78,7 +78,7 @@ pub struct Agent {
     /// The compiled form of each chart, by index, if it was compiled on loading.
     pub compiled: Vec<Option<CompiledModel>>,
     /// The settings of each chart, by index.
-    pub own: Vec<ChartSettings>,
+    pub chart_settings: Vec<ChartSettings>,
     /// Generated charts, by index among the charts.
     pub generated: BTreeMap<usize, GeneratedChart>,
     /// The reaction to failing activities.
@@ -139,7 +139,7 @@ impl Agent {
             activities: Vec::new(),
             charts: Vec::new(),
             compiled: Vec::new(),
-            own: Vec::new(),
+            chart_settings: Vec::new(),
             generated: BTreeMap::new(),
             policy: FailurePolicy::default(),
             real_time: false,
@@ -190,7 +190,7 @@ impl Agent {
         self.models.push(model.into());
         self.charts.push(chart);
         self.compiled.push(None);
-        self.own.push(ChartSettings::new());
+        self.chart_settings.push(ChartSettings::new());
         self
     }
 
@@ -217,7 +217,7 @@ impl Agent {
 
     /// Sets the settings of the statechart added last; settings not given default to the agent's.
     pub fn chart_settings(mut self, settings: ChartSettings) -> Agent {
-        if let Some(own) = self.own.last_mut() {
+        if let Some(own) = self.chart_settings.last_mut() {
             *own = settings;
         }
         self
@@ -329,7 +329,7 @@ impl Agent {
             activities: Vec::new(),
             charts: self.charts.clone(),
             compiled: self.compiled.clone(),
-            own: self.own.clone(),
+            chart_settings: self.chart_settings.clone(),
             generated: BTreeMap::new(),
             policy: self.policy,
             real_time: self.real_time,

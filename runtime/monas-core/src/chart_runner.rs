@@ -57,7 +57,7 @@ pub struct ChartRunner {
     machine: Machine,
     host: ChartHost,
     monitors: Option<Monitors>,
-    own: ChartSettings,
+    settings: ChartSettings,
     defaults: AgentDefaults,
     /// Number of the next periodic step on the grid of the chart's frequency.
     ticks: u64,
@@ -177,7 +177,7 @@ impl ChartRunner {
             machine,
             host,
             monitors: None,
-            own,
+            settings: own,
             defaults: AgentDefaults::default(),
             ticks: 0,
             is_paused: false,

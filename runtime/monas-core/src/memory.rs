@@ -214,7 +214,7 @@ pub struct LeakDetector {
     /// Minimum of the previous window, if there was one, number of consecutive rising windows, and
     /// the minimum before them.
     last: Option<u64>,
-    rises: u32,
+    rising_windows: u32,
     from: u64,
     is_said: bool,
 }
@@ -232,9 +232,9 @@ impl LeakDetector {
         self.calls = 0;
         // The use in the first window is the baseline, not growth.
         if self.last.is_some_and(|last| self.floor > last) {
-            self.rises += 1;
+            self.rising_windows += 1;
         } else {
-            (self.rises, self.from) = (0, self.floor);
+            (self.rising_windows, self.from) = (0, self.floor);
         }
         self.last = Some(self.floor);
         let is_new = self.grows() && !self.is_said;
@@ -244,7 +244,7 @@ impl LeakDetector {
 
     /// Whether growth was detected.
     pub fn grows(&self) -> bool {
-        self.rises >= WINDOWS_OF_GROWTH
+        self.rising_windows >= WINDOWS_OF_GROWTH
             && self.last.is_some_and(|last| last.saturating_sub(self.from) >= MIN_GROWTH)
     }
 

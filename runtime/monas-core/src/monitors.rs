@@ -84,7 +84,7 @@ pub(crate) struct StepObservation {
 impl StepObservation {
     /// Adds a micro-step.
     pub(crate) fn note(&mut self, record: &TraceRecord<'_>) {
-        if let MicroStepCause::Event(event) = record.occasion {
+        if let MicroStepCause::Event(event) = record.cause {
             self.events.push(event);
         }
         self.entered.extend(record.entries);

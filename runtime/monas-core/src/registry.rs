@@ -93,7 +93,7 @@ type ActivityConstructor = Arc<dyn Fn() -> Result<Box<dyn Activity>, String> + S
 /// Entries under one name: one constructor, or several, which makes the name ambiguous.
 #[derive(Clone)]
 struct RegistryEntry {
-    makers: Vec<(String, ActivityConstructor)>,
+    constructors: Vec<(String, ActivityConstructor)>,
 }
 
 /// Activities and functions by name, in alphabetical order.
@@ -138,7 +138,7 @@ impl Registry {
         // The linker's order is unspecified.
         registry.charts.values_mut().for_each(|same| same.sort_by_key(|chart| chart.module));
         registry.functions.values_mut().for_each(|same| same.sort_by_key(|function| function.module));
-        registry.activities.values_mut().for_each(|entry| entry.makers.sort_by(|a, b| a.0.cmp(&b.0)));
+        registry.activities.values_mut().for_each(|entry| entry.constructors.sort_by(|a, b| a.0.cmp(&b.0)));
         registry
     }
 
@@ -160,8 +160,9 @@ impl Registry {
     pub fn with_module(&self, module: Module) -> Result<Registry, Error> {
         let mut registry = self.without_module(module.name());
         for activity in module.activities() {
-            let makers = registry.activities.get(activity.name).map(|entry| entry.makers.as_slice());
-            if let Some((taken, _)) = makers.and_then(<[_]>::first) {
+            let constructors =
+                registry.activities.get(activity.name).map(|entry| entry.constructors.as_slice());
+            if let Some((taken, _)) = constructors.and_then(<[_]>::first) {
                 let message =
                     format!("activity `{}` of module `{}` is also in {taken}", activity.name, module.name());
                 let hint =
@@ -211,8 +212,8 @@ impl Registry {
     }
 
     fn insert(&mut self, name: String, module: &str, make: ActivityConstructor) {
-        let entry = self.activities.entry(name).or_insert_with(|| RegistryEntry { makers: Vec::new() });
-        entry.makers.push((module.to_owned(), make));
+        let entry = self.activities.entry(name).or_insert_with(|| RegistryEntry { constructors: Vec::new() });
+        entry.constructors.push((module.to_owned(), make));
     }
 
     /// A new instance of an activity.
@@ -222,7 +223,7 @@ impl Registry {
     /// [`ErrorKind::AmbiguousActivity`] the candidates. A panic in a module during construction is
     /// [`ErrorKind::Module`].
     pub fn activity(&self, name: &str) -> Result<Box<dyn Activity>, Error> {
-        match self.activities.get(name).map(|entry| entry.makers.as_slice()) {
+        match self.activities.get(name).map(|entry| entry.constructors.as_slice()) {
             Some([(module, make)]) => made(make).map_err(|reason| {
                 let message = format!("activity `{name}` of {module} cannot be made: {reason}");
                 Error::new(ErrorKind::Module, message)
@@ -235,7 +236,7 @@ impl Registry {
     /// The path of the Rust module that registers an activity; none if the name is unknown or
     /// ambiguous.
     pub fn activity_module(&self, name: &str) -> Option<&str> {
-        match self.activities.get(name)?.makers.as_slice() {
+        match self.activities.get(name)?.constructors.as_slice() {
             [(module, _)] => Some(module),
             _ => None,
         }
@@ -284,12 +285,13 @@ impl Registry {
 
     /// The names of all activities, ambiguous ones qualified by crate.
     pub fn activity_names(&self) -> impl Iterator<Item = &str> {
-        let plain_is_ambiguous = |name: &str| self.activities.get(name).is_some_and(|e| e.makers.len() > 1);
+        let plain_is_ambiguous =
+            |name: &str| self.activities.get(name).is_some_and(|e| e.constructors.len() > 1);
         self.activities
             .iter()
             .filter(move |(name, entry)| match name.rsplit_once("::") {
                 Some((_, plain)) => plain_is_ambiguous(plain),
-                None => entry.makers.len() == 1,
+                None => entry.constructors.len() == 1,
             })
             .map(|(name, _)| name.as_str())
     }
@@ -344,8 +346,8 @@ pub(crate) fn package(module: &str) -> &str {
     module.split("::").next().unwrap_or(module)
 }
 
-fn ambiguous(name: &str, makers: &[(String, ActivityConstructor)]) -> Error {
-    let modules: Vec<&str> = makers.iter().map(|(module, _)| module.as_str()).collect();
+fn ambiguous(name: &str, constructors: &[(String, ActivityConstructor)]) -> Error {
+    let modules: Vec<&str> = constructors.iter().map(|(module, _)| module.as_str()).collect();
     let message = format!("activity `{name}` is registered in {}", modules.join(" and in "));
     let error = Error::new(ErrorKind::AmbiguousActivity, message);
     match modules.first() {

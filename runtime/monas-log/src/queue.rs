@@ -31,7 +31,7 @@ pub(crate) struct RecordQueue {
     dropped: AtomicU64,
     ends: AtomicBool,
     /// Whether the consumer thread sleeps or is about to.
-    asleep: AtomicBool,
+    is_asleep: AtomicBool,
     thread: OnceLock<Thread>,
 }
 
@@ -45,7 +45,7 @@ impl RecordQueue {
             full: ArrayQueue::new(CAPACITY),
             dropped: AtomicU64::new(0),
             ends: AtomicBool::new(false),
-            asleep: AtomicBool::new(false),
+            is_asleep: AtomicBool::new(false),
             thread: OnceLock::new(),
         }
     }
@@ -83,8 +83,8 @@ impl RecordQueue {
         // Either this thread sees that the consumer is about to sleep, or the consumer sees the
         // message.
         fence(Ordering::SeqCst);
-        if self.asleep.load(Ordering::Relaxed)
-            && self.asleep.swap(false, Ordering::SeqCst)
+        if self.is_asleep.load(Ordering::Relaxed)
+            && self.is_asleep.swap(false, Ordering::SeqCst)
             && let Some(thread) = self.thread.get()
         {
             thread.unpark();
@@ -102,11 +102,11 @@ impl RecordQueue {
     /// Sleeps until there is a message or the queue ends. Returns whether there may be one.
     pub(crate) fn sleep(&self) -> bool {
         loop {
-            self.asleep.store(true, Ordering::SeqCst);
+            self.is_asleep.store(true, Ordering::SeqCst);
             fence(Ordering::SeqCst);
             let (has_more, ends) = (!self.full.is_empty(), self.ends.load(Ordering::SeqCst));
             if has_more || ends {
-                self.asleep.store(false, Ordering::SeqCst);
+                self.is_asleep.store(false, Ordering::SeqCst);
                 return has_more;
             }
             std::thread::park();

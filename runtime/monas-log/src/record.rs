@@ -134,13 +134,13 @@ impl Visit for Record {
 pub(crate) struct BoundedText {
     text: String,
     /// Maximum length in bytes, without the mark.
-    most: usize,
+    max_bytes: usize,
     is_cut: bool,
 }
 
 impl BoundedText {
-    fn of(most: usize) -> BoundedText {
-        BoundedText { text: String::with_capacity(most + ELLIPSIS.len_utf8()), most, is_cut: false }
+    fn of(max: usize) -> BoundedText {
+        BoundedText { text: String::with_capacity(max + ELLIPSIS.len_utf8()), max_bytes: max, is_cut: false }
     }
 
     pub(crate) fn as_str(&self) -> &str {
@@ -166,7 +166,7 @@ impl BoundedText {
         if self.is_cut {
             return;
         }
-        let room = self.most - self.text.len();
+        let room = self.max_bytes - self.text.len();
         if text.len() <= room {
             return self.text.push_str(text);
         }

@@ -145,8 +145,8 @@ impl Samples {
 
     fn text(&mut self, scale: f64) -> String {
         let median = self.median();
-        let (least, most) = (self.0[0], self.0[self.0.len() - 1]);
-        format!("{:.2} ({:.2} to {:.2})", median * scale, least * scale, most * scale)
+        let (min, max) = (self.0[0], self.0[self.0.len() - 1]);
+        format!("{:.2} ({:.2} to {:.2})", median * scale, min * scale, max * scale)
     }
 }
 

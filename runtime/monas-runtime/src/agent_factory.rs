@@ -83,7 +83,7 @@ impl AgentFactory {
         names: &[String],
         now: Timestamp,
     ) -> Result<PreparedAgent, Error> {
-        let Agent { name, policy, frequency, activities, charts, compiled, own, .. } = agent;
+        let Agent { name, policy, frequency, activities, charts, compiled, chart_settings: own, .. } = agent;
         let (mut generated, semantics) = (agent.generated, agent.semantics);
         if frequency.is_none() && !activities.is_empty() {
             let message = format!("agent `{name}` has activities but no frequency");
@@ -174,8 +174,8 @@ impl AgentFactory {
         };
         let of_agent = Some((&profile.property_sets[..], profile.name.as_str(), profile.charts.len()));
         let monitors =
-            binder.monitors(of_agent, &chart.own.property_sets, &bound.chart).map_err(Error::invalid)?;
-        self.runner(bound, u32::try_from(number).unwrap_or(u32::MAX), monitors, chart.own.clone(), index)
+            binder.monitors(of_agent, &chart.settings.property_sets, &bound.chart).map_err(Error::invalid)?;
+        self.runner(bound, u32::try_from(number).unwrap_or(u32::MAX), monitors, chart.settings.clone(), index)
     }
 
     /// A generated chart by its name.

@@ -389,7 +389,7 @@ impl ScheduledList {
 pub(crate) struct PublishedTopics {
     notices: Arc<Mutex<Vec<PublicationNotice>>>,
     /// Holds the publications during their delivery; kept for its memory.
-    looked_through: Vec<PublicationNotice>,
+    delivered: Vec<PublicationNotice>,
 }
 
 /// A published message: its topic, its host, and the activity of a chart that published it, if any.
@@ -414,16 +414,16 @@ impl PublishedTopics {
         instances: impl Iterator<Item = &'a mut AgentInstance>,
         now: Timestamp,
     ) {
-        self.looked_through.clear();
+        self.delivered.clear();
         std::mem::swap(
             &mut *self.notices.lock().unwrap_or_else(PoisonError::into_inner),
-            &mut self.looked_through,
+            &mut self.delivered,
         );
-        if self.looked_through.is_empty() {
+        if self.delivered.is_empty() {
             return;
         }
         for instance in instances {
-            for (topic, host, origin) in &self.looked_through {
+            for (topic, host, origin) in &self.delivered {
                 instance.message_arrived(*topic, *host, *origin, now);
             }
         }

@@ -347,13 +347,13 @@ impl AgentShared {
         &self,
         index: usize,
         aspect: ChartAspect,
-        patience: Duration,
+        timeout: Duration,
     ) -> Result<Vec<String>, String> {
         let part = locked(&self.parts).charts.get(index).cloned();
         let part = part.ok_or_else(|| format!("`{}` has no such statechart", self.name))?;
         let (_, answered) = part.enqueue(AgentUpdate { inspection: Some(aspect), ..AgentUpdate::default() });
         let answer =
-            answered.recv_timeout(patience).map_err(|_| format!("`{}` does not answer", self.name))?;
+            answered.recv_timeout(timeout).map_err(|_| format!("`{}` does not answer", self.name))?;
         answer.map_err(|reasons| reasons.join("; "))
     }
 
@@ -361,7 +361,7 @@ impl AgentShared {
     ///
     /// # Errors
     /// The reasons against it. Nothing has changed then.
-    pub(crate) fn apply(&self, update: AgentUpdate, patience: Duration) -> UpdateResult {
+    pub(crate) fn apply(&self, update: AgentUpdate, timeout: Duration) -> UpdateResult {
         let SharedThreads { list, charts } = locked(&self.parts).clone();
         let shares = update.shares(list.is_some(), charts.len());
         let given: Vec<_> = shares
@@ -374,7 +374,7 @@ impl AgentShared {
             .collect();
         let mut said = Vec::new();
         for (part, number, answered, is_own) in given {
-            match answered.recv_timeout(patience) {
+            match answered.recv_timeout(timeout) {
                 Ok(answer) => said.extend(answer?),
                 Err(RecvTimeoutError::Disconnected) => return Err(vec!["the run has ended".into()]),
                 Err(RecvTimeoutError::Timeout) if is_own && part.withdraw(number) => {

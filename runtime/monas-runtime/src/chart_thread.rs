@@ -122,14 +122,14 @@ impl PoolDriver {
     /// Sleeps until something arrives or a time is reached.
     fn wait(&mut self, until: Timestamp) {
         let clock = self.clock;
-        let patience = || {
+        let timeout = || {
             if until == Timestamp::MAX {
                 return Some(Duration::MAX);
             }
             let now = clock.now();
             (now < until).then(|| until.since(now))
         };
-        self.thread.mailbox.wait(patience, &mut self.wakeups);
+        self.thread.mailbox.wait(timeout, &mut self.wakeups);
         self.run_ends |= self.wakeups.stop;
     }
 
@@ -246,8 +246,8 @@ impl ChartThread {
         let until = if is_inactive { Timestamp::MAX } else { due() };
         self.driver.wait(until);
         let now = self.driver.read_clock();
-        let Wakeups { messages, returned, nudge, .. } = &self.driver.wakeups;
-        let is_free = messages.is_empty() && !returned.is_empty() && !nudge && now < until;
+        let Wakeups { messages, returned, check_commands, .. } = &self.driver.wakeups;
+        let is_free = messages.is_empty() && !returned.is_empty() && !check_commands && now < until;
         self.driver.free_loop.begin_turn(is_free);
         if self.driver.run_ends {
             return;

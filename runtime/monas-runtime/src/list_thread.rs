@@ -90,11 +90,11 @@ impl ListThread {
     fn wait(&self, mail: &mut Wakeups<FinishedCall>) {
         let (clock, rests) = (self.clock, self.is_inactive());
         let until = if rests { Timestamp::MAX } else { self.deadlines.next() };
-        let patience = || {
+        let timeout = || {
             let now = clock.now();
             (now < until).then(|| until.since(now))
         };
-        self.thread.mailbox.wait(patience, mail);
+        self.thread.mailbox.wait(timeout, mail);
     }
 
     /// Whether no cycle is due at any time.

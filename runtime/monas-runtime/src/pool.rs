@@ -47,12 +47,12 @@ impl ActivityPool {
     /// A pool with a maximum number of threads, none of which exists yet.
     pub(crate) fn new(
         name: &str,
-        most: usize,
+        max_threads: usize,
         clock: RunClock,
         observed: Arc<ObservedThreads>,
         hub: &Hub,
     ) -> ActivityPool {
-        let work = Arc::new(WorkQueue::new(most));
+        let work = Arc::new(WorkQueue::new(max_threads));
         ActivityPool { name: name.into(), clock, observed, hub: hub.clone(), work, workers: Mutex::default() }
     }
 

@@ -49,11 +49,11 @@ struct ConnectedHost {
 impl RealTimeRun {
     /// Prepares all hosts, then starts the threads.
     pub(crate) fn start(config: RunConfig, seed: u64) -> Result<RealTimeRun, Error> {
-        let PreparedRun { world, stations, factory } = PreparedRun::new(config, seed)?;
+        let PreparedRun { world, hosts: prepared_hosts, factory } = PreparedRun::new(config, seed)?;
         let (line, events) = channel();
         let mut running = RealTimeRun {
             stopper: StopHandle::new(),
-            clock: run_clock(&stations)?,
+            clock: run_clock(&prepared_hosts)?,
             line,
             supervisor: None,
             world: None,
@@ -63,7 +63,7 @@ impl RealTimeRun {
         };
         let mut hosts = Vec::new();
         let hub_of_world = world.as_ref().map(|world| world.hub().clone());
-        let launched = running.launch(world, stations, &factory, &mut hosts);
+        let launched = running.launch(world, prepared_hosts, &factory, &mut hosts);
         running.hubs.extend(hub_of_world);
         wake_on_stop(&running.line, &running.stopper);
         let supervisor = Supervisor { hosts, events, stopper: running.stopper.clone(), clock: running.clock };
@@ -171,11 +171,12 @@ impl RealTimeRun {
     fn launch(
         &mut self,
         world: Option<WorldDriver>,
-        stations: Vec<PreparedHost>,
+        prepared_hosts: Vec<PreparedHost>,
         factory: &Arc<AgentFactory>,
         hosts: &mut Vec<RealTimeHost>,
     ) -> Result<(), Error> {
-        let connected = stations.into_iter().map(|station| self.connect_host(station, factory, hosts));
+        let connected =
+            prepared_hosts.into_iter().map(|prepared| self.connect_host(prepared, factory, hosts));
         let connected = connected.collect::<Result<Vec<ConnectedHost>, Error>>()?;
         world.map_or(Ok(()), |world| self.launch_world(world))?;
         for (host, ConnectedHost { agents, body, safe_state }) in hosts.iter_mut().zip(connected) {
@@ -188,12 +189,12 @@ impl RealTimeRun {
     /// Subscribes the agents of a host, then its links, which bring messages at once.
     fn connect_host(
         &mut self,
-        station: PreparedHost,
+        host: PreparedHost,
         factory: &Arc<AgentFactory>,
         hosts: &mut Vec<RealTimeHost>,
     ) -> Result<ConnectedHost, Error> {
         let PreparedHost { hub, body, agents: members, links, context: ground, profiles, configuration } =
-            station;
+            host;
         self.hubs.push(hub.clone());
         let clock = self.clock;
         let safe_state = Arc::new(AtomicBool::new(false));
@@ -226,8 +227,8 @@ impl RealTimeRun {
 }
 
 /// The clock of the run: its own, or that of the other end of a link configured for it.
-fn run_clock(stations: &[PreparedHost]) -> Result<RunClock, Error> {
-    let links = stations.iter().flat_map(|station| station.links.iter().map(|link| (&station.hub, link)));
+fn run_clock(hosts: &[PreparedHost]) -> Result<RunClock, Error> {
+    let links = hosts.iter().flat_map(|host| host.links.iter().map(|link| (&host.hub, link)));
     let mut followed = links.filter_map(|(hub, link)| Some((hub, link, link.clock.as_deref()?)));
     match (followed.next(), followed.next()) {
         (None, _) => Ok(RunClock::start()),

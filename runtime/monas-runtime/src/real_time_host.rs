@@ -627,8 +627,8 @@ mod tests {
         let agents = vec![Agent::statechart("m", chart)];
         let host = HostConfig { name: "local".into(), agents, ..HostConfig::default() };
         let config = RunConfig { registry: Some(registry), hosts: vec![host], ..RunConfig::default() };
-        let PreparedRun { mut stations, factory, .. } = PreparedRun::new(config, 0).unwrap();
-        let PreparedHost { hub, agents, context, profiles, configuration, .. } = stations.remove(0);
+        let PreparedRun { hosts: mut prepared_hosts, factory, .. } = PreparedRun::new(config, 0).unwrap();
+        let PreparedHost { hub, agents, context, profiles, configuration, .. } = prepared_hosts.remove(0);
         let (supervisor, _events) = channel();
         let safe_state = Arc::new(AtomicBool::new(false));
         let site = HostSite { hub: hub.clone(), host: 0, clock: RunClock::start(), safe_state, supervisor };

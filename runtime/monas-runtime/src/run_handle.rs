@@ -96,10 +96,10 @@ impl RunHandle {
     pub(crate) fn simulated(
         hubs: Vec<Hub>,
         shown: Arc<SimulatedClock>,
-        inlet: &RequestQueue,
+        queue: &RequestQueue,
         watched: Arc<WatchedRun>,
     ) -> RunHandle {
-        let requests = ExternalRequests { sender: inlet.sender(), watched };
+        let requests = ExternalRequests { sender: queue.sender(), watched };
         RunHandle { hubs, time: RunTime::Simulated(shown, requests) }
     }
 
@@ -132,9 +132,14 @@ impl RunHandle {
         let hub = hub.ok_or_else(|| format!("no host is named `{host}`"))?;
         match &self.time {
             RunTime::Real(clock, _) => publish(hub, path, bytes, clock.now()),
-            RunTime::Simulated(_, inlet) => {
+            RunTime::Simulated(_, requests) => {
                 let (path, bytes) = (path.into(), bytes.into());
-                inlet.submit(|answer| ExternalRequest::Message { hub: hub.clone(), path, bytes, answer })?
+                requests.submit(|answer| ExternalRequest::Message {
+                    hub: hub.clone(),
+                    path,
+                    bytes,
+                    answer,
+                })?
             }
         }
     }
@@ -147,9 +152,9 @@ impl RunHandle {
     pub fn change(&self, host: &str, change: Change) -> Result<Changed, String> {
         match &self.time {
             RunTime::Real(_, supervisor) => supervisor.change(host, change),
-            RunTime::Simulated(_, inlet) => {
+            RunTime::Simulated(_, requests) => {
                 let (host, change) = (host.into(), Box::new(change));
-                inlet.submit(|answer| ExternalRequest::Change { host, change, answer })?
+                requests.submit(|answer| ExternalRequest::Change { host, change, answer })?
             }
         }
     }
@@ -201,10 +206,10 @@ impl RunHandle {
         let chart = chart.cloned();
         let mut views = match &self.time {
             RunTime::Real(_, supervisor) => supervisor.host_statuses(chart)?,
-            RunTime::Simulated(_, inlet) => match inlet.watched.stuck_agent() {
+            RunTime::Simulated(_, requests) => match requests.watched.stuck_agent() {
                 // The run does not answer, but why is known.
                 Some(agent) if chart.is_none() => vec![stuck_host(agent)],
-                _ => inlet.submit(|answer| ExternalRequest::Look { chart, answer })?,
+                _ => requests.submit(|answer| ExternalRequest::Look { chart, answer })?,
             },
         };
         if let Some(host) = host {
@@ -293,7 +298,7 @@ impl ExternalRequests {
 
     fn submit_within<T>(
         &self,
-        patience: Duration,
+        timeout: Duration,
         what: impl FnOnce(SyncSender<T>) -> ExternalRequest,
     ) -> Result<T, String> {
         let (answer, answered) = sync_channel(1);
@@ -303,9 +308,9 @@ impl ExternalRequests {
             TrySendError::Full(_) => format!("{MAX_WAITING_REQUESTS} messages from outside wait already"),
             TrySendError::Disconnected(_) => "the run has ended".to_owned(),
         })?;
-        let mut reply = answered.recv_timeout(patience);
+        let mut reply = answered.recv_timeout(timeout);
         if matches!(reply, Err(RecvTimeoutError::Timeout)) && is_claimed.swap(true, Ordering::SeqCst) {
-            reply = answered.recv_timeout(patience);
+            reply = answered.recv_timeout(timeout);
         }
         reply.map_err(|error| match (error, self.watched.stalled()) {
             (RecvTimeoutError::Timeout, Some(call)) => format!("the run stands still: {call}"),

@@ -28,7 +28,7 @@ use monas_link::LinkTransport;
 /// Everything that runs, in execution order.
 pub(crate) struct PreparedRun {
     pub(crate) world: Option<WorldDriver>,
-    pub(crate) stations: Vec<PreparedHost>,
+    pub(crate) hosts: Vec<PreparedHost>,
     pub(crate) factory: Arc<AgentFactory>,
 }
 
@@ -68,8 +68,9 @@ impl PreparedRun {
         };
         let world = world.map(|world| factory.environment(world)).transpose()?;
         let binder = Binder::new(&factory.registry)?;
-        let stations = collect_all(configs.into_iter().map(|config| factory.prepare_host(&binder, config)))?;
-        Ok(PreparedRun { world, stations, factory: Arc::new(factory) })
+        let prepared_hosts =
+            collect_all(configs.into_iter().map(|config| factory.prepare_host(&binder, config)))?;
+        Ok(PreparedRun { world, hosts: prepared_hosts, factory: Arc::new(factory) })
     }
 }
 

@@ -41,7 +41,7 @@ pub struct Simulation {
     links: Vec<RunningLink>,
     requests: RequestQueue,
     /// Attributes log lines that are written during the simulation to its hosts.
-    hosting: LogHosts,
+    log_hosts: LogHosts,
     /// Scripted changes of agents, by time and the order in which they were added.
     script: BTreeMap<(Timestamp, usize), (usize, Change)>,
     /// The number of changes that have been scheduled.
@@ -52,16 +52,17 @@ pub struct Simulation {
 
 impl Simulation {
     pub(crate) fn new(config: RunConfig, seed: u64) -> Result<Simulation, Error> {
-        let PreparedRun { world, stations, factory } = PreparedRun::new(config, seed)?;
+        let PreparedRun { world, hosts: prepared_hosts, factory } = PreparedRun::new(config, seed)?;
         let shown = Arc::new(SimulatedClock::default());
         let mut links = Vec::new();
-        let watchdog = StallWatchdog::new(limits(&stations));
-        let hosts =
-            stations.into_iter().map(|station| SimulatedHost::new(station, &factory, &shown, &mut links));
+        let watchdog = StallWatchdog::new(limits(&prepared_hosts));
+        let hosts = prepared_hosts
+            .into_iter()
+            .map(|prepared| SimulatedHost::new(prepared, &factory, &shown, &mut links));
         let hosts = hosts.collect::<Result<Vec<SimulatedHost>, Error>>()?;
         let hubs = world.iter().map(WorldDriver::hub).chain(hosts.iter().map(SimulatedHost::hub));
         let hosting = LogHosts::simulated(hubs);
-        let (inlet, script) = (RequestQueue::new(), BTreeMap::new());
+        let (queue, script) = (RequestQueue::new(), BTreeMap::new());
         let (now, thread) = (Timestamp::ZERO, None);
         Ok(Simulation {
             now,
@@ -69,8 +70,8 @@ impl Simulation {
             world,
             hosts,
             links,
-            requests: inlet,
-            hosting,
+            requests: queue,
+            log_hosts: hosting,
             script,
             scripted: 0,
             watchdog,
@@ -81,7 +82,7 @@ impl Simulation {
     /// Sets the simulated time and log hosts of this thread until the guards are dropped.
     fn enter(&mut self) -> (SimulatedTimeGuard, LogHostsGuard) {
         self.watchdog.watch_this_thread(&self.shown);
-        (SimulatedTimeGuard::begin(self.now), self.hosting.begin())
+        (SimulatedTimeGuard::begin(self.now), self.log_hosts.begin())
     }
 
     /// The time up to which the run is complete.
@@ -331,10 +332,11 @@ impl Simulation {
 }
 
 /// The limits for calls of the agents that set one.
-fn limits(stations: &[PreparedHost]) -> BTreeMap<(String, String), Duration> {
-    let agents = stations.iter().flat_map(|station| station.agents.iter().map(move |agent| (station, agent)));
-    let limited = agents.filter_map(|(station, agent)| {
-        Some(((station.hub.host().to_owned(), agent.name.clone()), agent.stuck_after?))
+fn limits(prepared_hosts: &[PreparedHost]) -> BTreeMap<(String, String), Duration> {
+    let agents =
+        prepared_hosts.iter().flat_map(|prepared| prepared.agents.iter().map(move |agent| (prepared, agent)));
+    let limited = agents.filter_map(|(prepared, agent)| {
+        Some(((prepared.hub.host().to_owned(), agent.name.clone()), agent.stuck_after?))
     });
     limited.collect()
 }

@@ -86,8 +86,8 @@ impl SimulationWait {
             if end.is_none() && is_cancelled() {
                 end = Some(clock.now() + limit);
             }
-            let patience = end.map_or(CHECK_INTERVAL, |end: Timestamp| end.since(clock.now()));
-            match self.done.recv_timeout(patience) {
+            let timeout = end.map_or(CHECK_INTERVAL, |end: Timestamp| end.since(clock.now()));
+            match self.done.recv_timeout(timeout) {
                 Ok((simulation, result)) => return result.map(|()| simulation),
                 Err(RecvTimeoutError::Timeout) if end.is_none() => {}
                 Err(RecvTimeoutError::Timeout) => return Err(self.stuck(limit)),

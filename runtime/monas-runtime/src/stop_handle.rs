@@ -17,7 +17,7 @@ struct StopState {
     stopped: Mutex<bool>,
     changed: Condvar,
     /// Callbacks for the end of the run, for threads that do not wait here.
-    bells: Mutex<Vec<StopCallback>>,
+    callbacks: Mutex<Vec<StopCallback>>,
 }
 
 type StopCallback = Box<dyn Fn() + Send + Sync>;
@@ -38,12 +38,12 @@ impl StopHandle {
     pub fn stop(&self) {
         *self.shared.stopped.lock().unwrap_or_else(PoisonError::into_inner) = true;
         self.shared.changed.notify_all();
-        self.shared.bells.lock().unwrap_or_else(PoisonError::into_inner).iter().for_each(|ring| ring());
+        self.shared.callbacks.lock().unwrap_or_else(PoisonError::into_inner).iter().for_each(|ring| ring());
     }
 
     /// Calls `bell` when the end of the run is requested.
     pub(crate) fn on_stop(&self, bell: StopCallback) {
-        self.shared.bells.lock().unwrap_or_else(PoisonError::into_inner).push(bell);
+        self.shared.callbacks.lock().unwrap_or_else(PoisonError::into_inner).push(bell);
     }
 
     /// Whether the end of the run was requested.

@@ -288,7 +288,7 @@ impl<B: Behaviour> DirectRobot<B> {
         let memory = &mut self.memory;
         let allowed = matches!(memory.game.state(), PlayerState::Ready | PlayerState::Playing);
         let request = PendingRequest {
-            wish: memory.motion,
+            motion: memory.motion,
             ball_speed: 0.0,
             number: memory.motion_number,
             age: now.since(memory.requested_at),

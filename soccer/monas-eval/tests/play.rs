@@ -34,8 +34,8 @@ fn every_methodology_shoots_saves_and_costs() {
     // The skills are the same, so no methodology shoots or is shot at much more than another.
     for shots in [|row: &Row| row.1.shots, |row: &Row| row.1.shots_faced] {
         let counts = evaluation.rows.iter().map(shots);
-        let (least, most) = counts.fold((u32::MAX, 0), |(least, most), it| (least.min(it), most.max(it)));
-        assert!(most <= 3 * least, "{least} and {most} shots:\n{text}");
+        let (min, max) = counts.fold((u32::MAX, 0), |(min, max), it| (min.min(it), max.max(it)));
+        assert!(max <= 3 * min, "{min} and {max} shots:\n{text}");
     }
     let saves: u32 = evaluation.rows.iter().map(|row| row.1.saves).sum();
     assert!(saves > 0, "{text}");

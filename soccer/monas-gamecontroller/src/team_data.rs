@@ -129,15 +129,15 @@ impl PlayerData {
 
 /// Checks the number of a goalkeeper.
 fn goalkeeper(rules: RuleBook, number: u8) -> Result<u8, Error> {
-    let least = match rules {
+    let min = match rules {
         RuleBook::StandardPlatform => 1,
         RuleBook::HumanoidSoccer => 0,
     };
-    if (least..=MAX_PLAYERS as u8).contains(&number) {
+    if (min..=MAX_PLAYERS as u8).contains(&number) {
         return Ok(number);
     }
     let version = rules.version();
     let message =
-        format!("the goalkeeper's number in version {version} is {least} to {MAX_PLAYERS}, not {number}");
+        format!("the goalkeeper's number in version {version} is {min} to {MAX_PLAYERS}, not {number}");
     Err(Error::new(ErrorKind::Value, message))
 }

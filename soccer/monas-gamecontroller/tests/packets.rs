@@ -20,8 +20,8 @@ fn of<T: Copy + std::fmt::Debug + 'static>(
 
 fn player(rules: RuleBook) -> impl Strategy<Value = PlayerData> {
     let penalty = proptest::option::of(of(rules, Penalty::all(), Penalty::number));
-    let most = if rules == RuleBook::HumanoidSoccer { u8::MAX } else { 0 };
-    (penalty, any::<u8>(), 0..=most, 0..=most).prop_map(|(penalty, seconds_left, warnings, cautions)| {
+    let max = if rules == RuleBook::HumanoidSoccer { u8::MAX } else { 0 };
+    (penalty, any::<u8>(), 0..=max, 0..=max).prop_map(|(penalty, seconds_left, warnings, cautions)| {
         PlayerData { penalty, seconds_left, warnings, cautions }
     })
 }

@@ -58,7 +58,7 @@ pub(crate) struct RobotFile {
     /// Its agents run in a process of their own, in real time.
     pub(crate) has_process: bool,
     /// Overrides of the role for this robot.
-    pub(crate) own: Layers,
+    pub(crate) overrides: Layers,
 }
 
 /// Reads a match file with overriding layers; faults are appended to `diagnostics`.
@@ -308,7 +308,7 @@ fn read_robot(
         let found = body.error("E0329", body.name_span(), "a robot has one body");
         diagnostics.push(found.with_hint("remove one of the two `body`"));
     }
-    Some(RobotFile { number: values.number("number")?, role: role?, has_process, own })
+    Some(RobotFile { number: values.number("number")?, role: role?, has_process, overrides: own })
 }
 
 /// Checks that involve both teams.

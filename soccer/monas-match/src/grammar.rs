@@ -30,7 +30,7 @@ pub fn of_matches() -> Grammar {
 }
 
 fn game() -> ElementRule {
-    let half = Kind::Duration { least: Duration::ZERO };
+    let half = Kind::Duration { min: Duration::ZERO };
     ElementRule::new("match", "two teams on a field")
         .attribute(AttributeRule::new("field", Kind::File, "the file of the field"))
         .attribute(AttributeRule::new("simulator", Kind::File, "the file of the simulator's numbers"))
@@ -99,5 +99,5 @@ fn kind(parameter: &Parameter) -> Kind {
     if parameter.unit == "0 or 1" {
         return Kind::whole_in(0, 1);
     }
-    Kind::number_in(parameter.least, parameter.most)
+    Kind::number_in(parameter.min, parameter.max)
 }

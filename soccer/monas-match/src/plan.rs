@@ -86,9 +86,9 @@ fn robots(
     let (mut settings, mut registry) = (MatchSettings::new(layers), registry.clone());
     for team in &file.teams {
         for robot in &team.robots {
-            let resolved = config::resolve(&robot.role, &Grammar::agents(), &settings.over(&robot.own));
+            let resolved = config::resolve(&robot.role, &Grammar::agents(), &settings.over(&robot.overrides));
             diagnostics.extend(resolved.diagnostics);
-            diagnostics.extend(settings.unmatched(&robot.own, resolved.unmatched));
+            diagnostics.extend(settings.unmatched(&robot.overrides, resolved.unmatched));
             let setup = config::assemble(
                 &resolved.elements,
                 &robot.role,

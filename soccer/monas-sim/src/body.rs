@@ -183,11 +183,11 @@ impl SimulatedBody {
         if self.command.motion == Motion::Freeze {
             return;
         }
-        let most = physics.head_speed * STEP;
+        let max = physics.head_speed * STEP;
         let yaw = self.command.head_yaw.clamp(-physics.head_yaw_limit, physics.head_yaw_limit);
         let pitch = self.command.head_pitch.clamp(physics.head_pitch_least, physics.head_pitch_most);
-        self.head_yaw += (yaw - self.head_yaw).clamp(-most, most);
-        self.head_pitch += (pitch - self.head_pitch).clamp(-most, most);
+        self.head_yaw += (yaw - self.head_yaw).clamp(-max, max);
+        self.head_pitch += (pitch - self.head_pitch).clamp(-max, max);
     }
 
     fn follow_command(&mut self, physics: &Physics, held: bool) -> Option<BodyEvent> {

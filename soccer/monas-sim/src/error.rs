@@ -42,8 +42,8 @@ impl Error {
         Self::new(ErrorKind::UnknownParameter, format!("{structure} has no parameter `{key}`"))
     }
 
-    pub(crate) fn out_of_range(key: &str, value: f64, least: f64, most: f64, unit: &str) -> Self {
-        let message = format!("`{key}` is {value}, but must lie from {least} to {most} ({unit})");
+    pub(crate) fn out_of_range(key: &str, value: f64, min: f64, max: f64, unit: &str) -> Self {
+        let message = format!("`{key}` is {value}, but must lie from {min} to {max} ({unit})");
         Self::new(ErrorKind::OutOfRange, message)
     }
 

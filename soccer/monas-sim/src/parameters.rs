@@ -15,9 +15,9 @@ pub struct Parameter {
     /// The value unless it is set.
     pub default: f64,
     /// The least value allowed.
-    pub least: f64,
+    pub min: f64,
     /// The greatest value allowed.
-    pub most: f64,
+    pub max: f64,
     /// Its meaning and the source of the value.
     pub doc: &'static str,
 }
@@ -25,7 +25,7 @@ pub struct Parameter {
 impl Parameter {
     /// Whether `value` is finite and inside the range.
     pub fn allows(&self, value: f64) -> bool {
-        (self.least..=self.most).contains(&value)
+        (self.min..=self.max).contains(&value)
     }
 }
 
@@ -35,7 +35,7 @@ macro_rules! parameters {
     (
         $(#[$meta:meta])*
         pub struct $name:ident {
-            $( $(#[doc = $doc:literal])+ $field:ident : $unit:literal = $default:literal in $least:literal to $most:literal; )+
+            $( $(#[doc = $doc:literal])+ $field:ident : $unit:literal = $default:literal in $min:literal to $max:literal; )+
         }
     ) => {
         $(#[$meta])*
@@ -56,8 +56,8 @@ macro_rules! parameters {
                 key: stringify!($field),
                 unit: $unit,
                 default: $default,
-                least: $least,
-                most: $most,
+                min: $min,
+                max: $max,
                 doc: concat!($($doc),+).trim_ascii(),
             }, )+ ];
 
@@ -100,7 +100,7 @@ macro_rules! parameters {
                 if parameter.allows(value) {
                     return Ok(());
                 }
-                Err($crate::Error::out_of_range(parameter.key, value, parameter.least, parameter.most, parameter.unit))
+                Err($crate::Error::out_of_range(parameter.key, value, parameter.min, parameter.max, parameter.unit))
             }
         }
     };

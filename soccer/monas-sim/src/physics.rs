@@ -230,7 +230,7 @@ mod tests {
     fn every_key_can_be_set_to_its_limits() {
         for parameter in Physics::keys() {
             let mut physics = Physics::default();
-            for value in [parameter.least, parameter.most] {
+            for value in [parameter.min, parameter.max] {
                 assert!(physics.set(parameter.key, value).is_ok());
                 assert_eq!(physics.get(parameter.key), Some(value));
             }

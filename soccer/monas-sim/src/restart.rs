@@ -55,15 +55,15 @@ fn spread(field: &FieldGeometry, rank: usize, clear_of_circle: f64) -> Vector {
 /// against the team that touched it last, which defends `against`.
 pub(crate) fn throw_in(
     field: &FieldGeometry,
-    setback: f64,
+    behind: f64,
     position: Vector,
     against: Option<FieldSide>,
 ) -> Vector {
-    let most =
+    let max =
         Vector::new(field.half_length() - field.throw_in_inset, field.half_width() - field.throw_in_inset);
     let at = position.x.clamp(-field.half_length(), field.half_length());
-    let back = against.map_or(0.0, |side| side.sign() * setback);
-    Vector::new((at + back).clamp(-most.x, most.x), most.y.copysign(position.y))
+    let back = against.map_or(0.0, |side| side.sign() * behind);
+    Vector::new((at + back).clamp(-max.x, max.x), max.y.copysign(position.y))
 }
 
 /// The position at which a stuck ball is dropped: the centre, or a penalty mark if it is stuck at

@@ -153,11 +153,11 @@ impl Statistics {
             self.crowded_time += STEP;
         }
         let mut holder = None;
-        let mut least = POSSESSION_DISTANCE;
+        let mut min = POSSESSION_DISTANCE;
         for (index, robot) in scene.on_field().filter(|(_, robot)| robot.phase.is_upright()) {
             let distance = (robot.pose.position - scene.ball.position).norm();
-            if distance <= least {
-                (holder, least) = (Some(index), distance);
+            if distance <= min {
+                (holder, min) = (Some(index), distance);
             }
         }
         if let Some(robot) = holder {

@@ -259,9 +259,9 @@ fn race(role: &str, rounds: usize, turn: u64, contestants: &mut [Box<dyn Contest
     let first = taken[0].clone();
     for (contestant, taken) in contestants.iter().zip(&taken) {
         let ratio = median(taken.iter().zip(&first).map(|(one, first)| one / first));
-        let least = taken.iter().copied().fold(f64::INFINITY, f64::min);
-        let most = taken.iter().copied().fold(0.0, f64::max);
-        let spread = format!("{least:.1} .. {most:.1}");
+        let min = taken.iter().copied().fold(f64::INFINITY, f64::min);
+        let max = taken.iter().copied().fold(0.0, f64::max);
+        let spread = format!("{min:.1} .. {max:.1}");
         println!(
             "  {:<34} {:>20.1} {spread:>19} {ratio:>8.1}",
             contestant.name(),

@@ -185,7 +185,7 @@ impl MotionRequest {
 
     /// The request as input of the motion arbiter.
     pub(crate) fn request(&self, age: Duration) -> PendingRequest {
-        PendingRequest { wish: self.desired(), ball_speed: self.ball_speed, number: self.number, age }
+        PendingRequest { motion: self.desired(), ball_speed: self.ball_speed, number: self.number, age }
     }
 }
 

@@ -292,7 +292,7 @@ impl Calibration {
         let green_luma = quantile(&self.green_luma, 0.5);
         // One standard deviation below the middle: above it, there may be lines.
         let deviation = (green_luma - quantile(&self.green_luma, 0.16)).clamp(1.0, 0.3 * green_luma.max(4.0));
-        let least = (1.35 * green_luma).max(green_luma + 4.0 * deviation).max(40.0);
+        let min = (1.35 * green_luma).max(green_luma + 4.0 * deviation).max(40.0);
         self.pale_luma.fill(0);
         // White is brighter than the carpet and differs from it in chroma.
         let (mut sum, mut count) = ([0.0f32; 2], 0.0f32);
@@ -302,7 +302,7 @@ impl Calibration {
             let chroma = relative(luma, u, v);
             let along = (chroma[0] * green[0] + chroma[1] * green[1]) / size;
             let across = (chroma[1] * green[0] - chroma[0] * green[1]).abs() / size;
-            if bright > least && along < 0.55 && across < 0.5 && along > -0.6 {
+            if bright > min && along < 0.55 && across < 0.5 && along > -0.6 {
                 self.pale_luma[usize::from(luma)] += 1;
                 (sum[0], sum[1], count) = (sum[0] + chroma[0], sum[1] + chroma[1], count + 1.0);
             }

@@ -125,7 +125,7 @@ fn extent(solid: &Solid, camera: &Camera) -> Option<[usize; 4]> {
     if behind > 0 {
         area = [0.0, 0.0, width, height];
     }
-    let bound = |value: f64, most: f64| value.clamp(0.0, most) as usize;
+    let bound = |value: f64, max: f64| value.clamp(0.0, max) as usize;
     let area = [
         bound(area[0] - 1.0, width),
         bound(area[1] - 1.0, height),

@@ -66,11 +66,11 @@ impl TapeRun {
 
     /// The number of messages up to and with the next firing of a transition after `count`
     /// messages, or the last one before.
-    pub(crate) fn firing_from(&self, count: usize, key: &str, id: u32, is_back: bool) -> Option<usize> {
+    pub(crate) fn firing_from(&self, count: usize, key: &str, id: u32, is_backward: bool) -> Option<usize> {
         let chart = self.charts().iter().find(|chart| chart.key().text() == key)?;
         let history = self.history(chart);
         let has_fired = |one: &&RecordedStep| one.has_fired(TransitionId(id));
-        let found = match is_back {
+        let found = match is_backward {
             false => history.since(count).iter().find(has_fired),
             true => history.until(count.saturating_sub(1)).iter().rfind(has_fired),
         };

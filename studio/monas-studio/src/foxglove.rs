@@ -96,13 +96,13 @@ fn exchange(
             views_due = now() + VIEW_INTERVAL;
         }
         let Some(watch) = &mut watch else { continue };
-        let mut patience = MAX_WAIT;
+        let mut timeout = MAX_WAIT;
         for _ in 0..MAX_MESSAGES {
-            let Some(seen) = watch.wait(patience)? else { break };
+            let Some(seen) = watch.wait(timeout)? else { break };
             for frame in channels.frames(&seen, cameras::of(state.scene.as_deref())) {
                 socket.send(Message::binary(frame))?;
             }
-            patience = Duration::ZERO;
+            timeout = Duration::ZERO;
         }
     }
     Ok(())

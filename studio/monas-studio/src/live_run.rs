@@ -285,13 +285,13 @@ impl EventLog {
 /// The next messages, at most one batch.
 fn next_batch(watch: &mut WatchStream) -> Result<Vec<Seen>, monas_link::Error> {
     let mut batch = Vec::new();
-    let mut patience = CHECK_INTERVAL;
-    while let Some(seen) = watch.wait(patience)? {
+    let mut timeout = CHECK_INTERVAL;
+    while let Some(seen) = watch.wait(timeout)? {
         batch.push(seen);
         if batch.len() == MAX_MESSAGES {
             break;
         }
-        patience = Duration::ZERO;
+        timeout = Duration::ZERO;
     }
     Ok(batch)
 }

@@ -113,8 +113,8 @@ impl Session for LiveSession {
                 self.go_to(number, time);
                 None
             }
-            ViewerRequest::Step { key, is_back } => self.step(&key, is_back, |_| true),
-            ViewerRequest::Jump { key, transition, is_back } => self.step(&key, is_back, |step| {
+            ViewerRequest::Step { key, is_backward } => self.step(&key, is_backward, |_| true),
+            ViewerRequest::Jump { key, transition, is_backward } => self.step(&key, is_backward, |step| {
                 step.selected.contains(&transition) || step.taken.contains(&transition)
             }),
             ViewerRequest::Live => {
@@ -259,10 +259,10 @@ impl LiveSession {
     }
 
     /// Seeks another step of a chart.
-    fn step(&mut self, key: &str, is_back: bool, is_wanted: impl Fn(&Chart) -> bool) -> Option<Value> {
+    fn step(&mut self, key: &str, is_backward: bool, is_wanted: impl Fn(&Chart) -> bool) -> Option<Value> {
         let ring = self.state.ring();
         let number = self.past.as_ref().map_or(ring.end(), |past| past.number);
-        let found = ring.step_from(number, key, is_back, is_wanted);
+        let found = ring.step_from(number, key, is_backward, is_wanted);
         drop(ring);
         if let Some((number, time)) = found {
             self.go_to(number, time);

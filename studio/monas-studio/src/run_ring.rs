@@ -204,7 +204,7 @@ impl RunRing {
         &self,
         number: u64,
         key: &str,
-        is_back: bool,
+        is_backward: bool,
         is_wanted: impl Fn(&Chart) -> bool,
     ) -> Option<(u64, u64)> {
         let find = |number: u64| {
@@ -217,7 +217,7 @@ impl RunRing {
             let is_own = ChartKey { host, agent, chart: step.chart }.text() == key;
             is_own.then_some((number + 1, message.time))
         };
-        match is_back {
+        match is_backward {
             false => (number..self.end()).find_map(find),
             true => (self.first..number.saturating_sub(1)).rev().find_map(find),
         }
@@ -265,8 +265,8 @@ mod tests {
             let bytes = step(selected);
             ring.push(&ViewedMessage { topic: CHART_TOPIC, ..message(time, &bytes) }, false);
         }
-        let of = |number, is_back, segment: u32| {
-            ring.step_from(number, "a/p/0", is_back, |step| step.selected.contains(&segment))
+        let of = |number, is_backward, segment: u32| {
+            ring.step_from(number, "a/p/0", is_backward, |step| step.selected.contains(&segment))
         };
         assert_eq!(
             (of(0, false, 6), of(0, false, 5), of(1, false, 5)),

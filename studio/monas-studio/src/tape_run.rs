@@ -256,14 +256,14 @@ impl TapeRun {
 
     /// The number of messages up to and with the next step of a chart after `count` messages, or
     /// the last one before.
-    pub(crate) fn step_from(&self, count: usize, key: &str, is_back: bool) -> Option<usize> {
+    pub(crate) fn step_from(&self, count: usize, key: &str, is_backward: bool) -> Option<usize> {
         let is_step = |index: &usize| {
             self.entry(*index).is_some_and(|(entry, channel)| {
                 channel.topic == CHART_TOPIC
                     && key_of(channel, self.bytes(entry)).is_some_and(|known| known == key)
             })
         };
-        match is_back {
+        match is_backward {
             false => (count..self.len()).find(is_step).map(|index| index + 1),
             true => (0..count.saturating_sub(1)).rev().find(is_step).map(|index| index + 1),
         }

@@ -242,11 +242,11 @@ impl Session for TapeSession {
                     json!({"type": "why transition", "key": key, "transition": transition, "why": why}),
                 );
             }
-            ViewerRequest::Step { key, is_back } => {
-                self.hold_at(self.tape.step_from(self.moment.count, &key, is_back));
+            ViewerRequest::Step { key, is_backward } => {
+                self.hold_at(self.tape.step_from(self.moment.count, &key, is_backward));
             }
-            ViewerRequest::Jump { key, transition, is_back } => {
-                self.hold_at(self.tape.firing_from(self.moment.count, &key, transition, is_back));
+            ViewerRequest::Jump { key, transition, is_backward } => {
+                self.hold_at(self.tape.firing_from(self.moment.count, &key, transition, is_backward));
             }
         }
         None

@@ -134,10 +134,10 @@ fn send(socket: &mut WebSocket<TcpStream>, object: &Value) -> tungstenite::Resul
 /// The next text of the page; `None` if there is none in time.
 pub(crate) fn next_request(
     socket: &mut WebSocket<TcpStream>,
-    patience: Duration,
+    timeout: Duration,
 ) -> tungstenite::Result<Option<String>> {
     // A timeout of zero would mean no timeout.
-    socket.get_ref().set_read_timeout(Some(patience.max(Duration::from_millis(1))))?;
+    socket.get_ref().set_read_timeout(Some(timeout.max(Duration::from_millis(1))))?;
     match socket.read() {
         Ok(Message::Text(text)) => Ok(Some(text.as_str().to_owned())),
         Ok(_) => Ok(None),

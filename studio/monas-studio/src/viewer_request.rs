@@ -30,9 +30,9 @@ pub(crate) enum ViewerRequest {
     /// An explanation why a transition fired, or did not, at the moment of a tape.
     WhyTransition { key: String, transition: u32 },
     /// The next firing of a transition on a tape, or the one before.
-    Jump { key: String, transition: u32, is_back: bool },
+    Jump { key: String, transition: u32, is_backward: bool },
     /// The next step of a chart on a tape, or the one before.
-    Step { key: String, is_back: bool },
+    Step { key: String, is_backward: bool },
     /// A change of the run, or why the request for it cannot be read; with the number of the
     /// request.
     Control(Option<u64>, Result<ControlRequest, String>),
@@ -65,9 +65,9 @@ impl ViewerRequest {
             "jump" => Some(ViewerRequest::Jump {
                 key: word("key")?,
                 transition: number("transition")?,
-                is_back: value["back"].as_bool()?,
+                is_backward: value["back"].as_bool()?,
             }),
-            "step" => Some(ViewerRequest::Step { key: word("key")?, is_back: value["back"].as_bool()? }),
+            "step" => Some(ViewerRequest::Step { key: word("key")?, is_backward: value["back"].as_bool()? }),
             "seek" => Some(ViewerRequest::Seek(value["seconds"].as_f64().filter(|time| *time >= 0.0)?)),
             name if ControlRequest::is_type(name) => {
                 let (id, request) = ControlRequest::read(value);

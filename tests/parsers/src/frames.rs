@@ -37,7 +37,7 @@ pub fn frames(data: &[u8]) {
 }
 
 fn end(hub: &Hub, incarnation: u64) -> HubBridge {
-    let settings = LinkSettings { guests: true, ..LinkSettings::default() };
+    let settings = LinkSettings { accepts_unlinked: true, ..LinkSettings::default() };
     HubBridge::new(hub, settings.sending("link/*").receiving("link/*"), incarnation)
         .expect("the settings fit")
 }

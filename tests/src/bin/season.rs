@@ -67,10 +67,10 @@ fn poses(variant: &str, seeds: &str, seconds: &str) -> Result<(), String> {
         lost += kidnapped.lost;
     }
     let print = |what: &str, values: &[f64], unit: &str| {
-        let [half, most, nearly] = [0.5, 0.9, 0.95].map(|part| quantile(values, part).unwrap_or(f64::NAN));
-        println!("{what:<28} median {half:.2} {unit}, 90 % {most:.2} {unit}, 95 % {nearly:.2} {unit}");
+        let [median, p90, p95] = [0.5, 0.9, 0.95].map(|part| quantile(values, part).unwrap_or(f64::NAN));
+        println!("{what:<28} median {median:.2} {unit}, 90 % {p90:.2} {unit}, 95 % {p95:.2} {unit}");
     };
-    print("error of the place", &distances, "m");
+    print("error of the position", &distances, "m");
     print("error of the heading", &turns, "rad");
     print("recovery after kidnapping", &recoveries, "s");
     println!("{} of {} kidnapped robots were lost for 30 s", lost, recoveries.len() + lost);

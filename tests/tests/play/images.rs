@@ -125,7 +125,7 @@ fn what_images_show_is_where_it_is() {
     // The inclination of the torso is measured with a deviation of 0.01 rad.
     assert!(error < 0.04 && false_balls * 30 <= rounds, "error {error}, {false_balls} false balls");
     assert!(posts.len() > images, "{} posts in {images} images", posts.len());
-    let far = |all: &[f64], most: f64| all.iter().filter(|away| **away > most).count();
+    let far = |all: &[f64], max: f64| all.iter().filter(|away| **away > max).count();
     let near: Vec<f64> = lines.iter().filter(|(at, _)| *at < 2.5).map(|(_, away)| *away).collect();
     let lines: Vec<f64> = lines.iter().map(|(_, away)| *away).collect();
     let (line, edge) = (mean(&near), mean(&border));

@@ -128,10 +128,10 @@ fn print_row(name: &str, rounds: &[f64], first: &[f64], allocated: f64) {
     let pairs = || rounds.iter().zip(first);
     let ratio = median(pairs().map(|(one, first)| one / first));
     let more = median(pairs().map(|(one, first)| one - first));
-    let least = rounds.iter().copied().fold(f64::INFINITY, f64::min);
-    let most = rounds.iter().copied().fold(0.0, f64::max);
+    let min = rounds.iter().copied().fold(f64::INFINITY, f64::min);
+    let max = rounds.iter().copied().fold(0.0, f64::max);
     let middle = median(rounds.iter().copied());
-    let spread = format!("{least:.1} .. {most:.1}");
+    let spread = format!("{min:.1} .. {max:.1}");
     println!("  {name:<34} {middle:>11.1} {spread:>21} {ratio:>8.2} {more:>+11.1}  {allocated:>6.2}");
 }
 

@@ -80,9 +80,9 @@ impl FlatSearch<'_> {
     /// The operations after the planned conditions have been read.
     fn path(&mut self, from: &Machine, cause: &StepCause, planned: &[bool]) -> Result<FlatPath, Diagnostic> {
         self.steps += 1;
-        let most = self.limit.saturating_mul(MAX_STEPS_PER_STATE);
-        if self.steps > most {
-            return Err(too_many(format!("it has more than {most} paths")));
+        let max = self.limit.saturating_mul(MAX_STEPS_PER_STATE);
+        if self.steps > max {
+            return Err(too_many(format!("it has more than {max} paths")));
         }
         if planned.iter().filter(|holds| **holds).count() > MAX_DEPTH {
             return Err(self.too_deep(from, cause, planned));

@@ -198,14 +198,14 @@ impl Router {
             if cost > costs[state] {
                 continue;
             }
-            if best.is_some_and(|(least, ..)| least <= cost) {
+            if best.is_some_and(|(min, ..)| min <= cost) {
                 break;
             }
             let (index, heading) = (state / 4, Direction::ALL[state % 4]);
             for goal in goals.iter().filter(|goal| goal.grid_point == index) {
                 let turn = corner(heading, goal.side.reversed());
                 let total = cost + goal.cost + turn + self.grid.burden_of(index, goal.side);
-                if best.is_none_or(|(least, ..)| total < least) {
+                if best.is_none_or(|(min, ..)| total < min) {
                     best = Some((total, state, goal));
                 }
             }

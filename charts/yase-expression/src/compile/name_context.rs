@@ -32,7 +32,7 @@ pub(crate) struct TypedTerm {
 
 /// One meaning of a name, and its description in diagnostics.
 struct Resolution {
-    what: String,
+    description: String,
     typed: TypedTerm,
 }
 
@@ -105,7 +105,7 @@ impl<'a> NameContext<'a> {
         };
         let is_message = matches!(as_message, Ok(Ok(_)));
         if meanings.len() + usize::from(is_message) > 1 {
-            let mut all: Vec<_> = meanings.iter().map(|meaning| meaning.what.as_str()).collect();
+            let mut all: Vec<_> = meanings.iter().map(|meaning| meaning.description.as_str()).collect();
             all.extend(is_message.then_some("a message"));
             let message = format!("`{path}` has several meanings: {}", all.join(", "));
             return Err(vec![
@@ -145,7 +145,7 @@ impl<'a> NameContext<'a> {
     fn meanings(&self, path: &Path, expected: Option<&ValueType>) -> Vec<Resolution> {
         let mut meanings = Vec::new();
         meanings.extend(self.timer(path).map(|timer| Resolution {
-            what: "a timer of the chart".to_owned(),
+            description: "a timer of the chart".to_owned(),
             typed: TypedTerm { term: timer_over(timer), kind: ValueType::Bool },
         }));
         let Some(name) = path.bare() else {
@@ -153,14 +153,17 @@ impl<'a> NameContext<'a> {
         };
         meanings.extend(self.expected_values(expected).and_then(|enumeration| value_of(enumeration, name)));
         meanings.extend(self.constants.iter().find(|constant| constant.name == name).map(|constant| {
-            Resolution { what: "a constant of the model".to_owned(), typed: constant_value(&constant.value) }
+            Resolution {
+                description: "a constant of the model".to_owned(),
+                typed: constant_value(&constant.value),
+            }
         }));
         let functions = self.vocabulary.functions.iter();
         let function = functions
             .filter(|function| function.parameters.is_empty())
             .find(|function| function.name == name);
         meanings.extend(function.map(|function| Resolution {
-            what: "a function without arguments".to_owned(),
+            description: "a function without arguments".to_owned(),
             typed: TypedTerm {
                 term: ValueTerm::Call(function.id, Box::default()),
                 kind: function.result.clone(),
@@ -230,7 +233,10 @@ fn value_of(enumeration: &Enumeration, name: &str) -> Option<Resolution> {
     let (_, number) = enumeration.values.iter().find(|(value, _)| value == name)?;
     let kind = ValueType::Enumeration(enumeration.name.clone());
     let what = format!("a value of the enumeration `{}`", enumeration.name);
-    Some(Resolution { what, typed: TypedTerm { term: ValueTerm::Literal(Literal::Enum(*number)), kind } })
+    Some(Resolution {
+        description: what,
+        typed: TypedTerm { term: ValueTerm::Literal(Literal::Enum(*number)), kind },
+    })
 }
 
 fn constant_value(value: &ConstantValue) -> TypedTerm {

@@ -10,7 +10,7 @@ use crate::test_host::TestHost;
 pub(crate) struct Heading<'a> {
     pub event: Option<&'a str>,
     pub fired: &'a [StaticPath],
-    pub losers: &'a [StaticPath],
+    pub preempted: &'a [StaticPath],
     pub held: &'a [StaticPath],
     pub deferring: Option<NodeId>,
 }
@@ -57,7 +57,7 @@ impl Stepper<'_> {
         let event = heading.event.map_or("-".to_owned(), |event| self.event_name(event));
         let mut text = format!("{} {event}: {selected}", self.now);
         let parts = [
-            ("preempt", self.path_names(heading.losers)),
+            ("preempt", self.path_names(heading.preempted)),
             ("hold", self.path_names(heading.held)),
             ("defer in", heading.deferring.map(|node| self.name(node)).unwrap_or_default()),
         ];

@@ -336,7 +336,10 @@ impl Stepper<'_> {
             Firing::Phases => self.fire_phases(now, host)?,
             _ => self.fire_each(now, host)?,
         };
-        self.print(&Heading { event, fired: &fired, losers: &losers, held: &later, deferring: None }, host);
+        self.print(
+            &Heading { event, fired: &fired, preempted: &losers, held: &later, deferring: None },
+            host,
+        );
         Ok(())
     }
 

@@ -296,7 +296,11 @@ impl ContentExecutor<'_> {
         match chart.node(end).parent {
             Some(Statechart::ROOT) | None => self.state.end = Some((end, data)),
             Some(composite) => {
-                self.state.done.entry(chart.node(composite).name.clone()).or_default().push_back(data);
+                self.state
+                    .completion_data
+                    .entry(chart.node(composite).name.clone())
+                    .or_default()
+                    .push_back(data);
             }
         }
     }

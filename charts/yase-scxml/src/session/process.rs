@@ -45,7 +45,7 @@ pub(crate) struct SessionState {
     /// States whose variables are initialised.
     pub(crate) bound: BTreeSet<NodeId>,
     /// Data of completion events, by the names of their composites.
-    pub(crate) done: BTreeMap<String, VecDeque<DataValue>>,
+    pub(crate) completion_data: BTreeMap<String, VecDeque<DataValue>>,
     /// The final state of the document once it is reached, with the data for the invoking session.
     pub(crate) end: Option<(NodeId, DataValue)>,
     /// The error that ended the session.
@@ -98,7 +98,7 @@ impl Process {
             to_invoke: BTreeSet::new(),
             invocations: BTreeMap::new(),
             bound: BTreeSet::new(),
-            done: BTreeMap::new(),
+            completion_data: BTreeMap::new(),
             end: None,
             fatal: None,
         };

@@ -42,18 +42,19 @@ impl<'a> SessionHost<'a> {
     pub(crate) fn new(
         prepared: &'a PreparedDocument,
         memory: &'a mut ScriptMemory,
-        book: &'a mut SessionState,
+        state: &'a mut SessionState,
         exchange: &'a mut EventRouter,
         platform: &'a mut dyn Platform,
     ) -> SessionHost<'a> {
-        SessionHost { prepared, memory: RefCell::new(memory), state: book, exchange, platform }
+        SessionHost { prepared, memory: RefCell::new(memory), state, exchange, platform }
     }
 
     /// An event created by the machine: an error, or the completion of a state.
     fn own_event(&mut self, name: &str) -> ScxmlEvent {
         let event = ScxmlEvent::platform(name);
-        let data =
-            name.strip_prefix("done.state.").and_then(|state| self.state.done.get_mut(state)?.pop_front());
+        let data = name
+            .strip_prefix("done.state.")
+            .and_then(|state| self.state.completion_data.get_mut(state)?.pop_front());
         event.with_data(data.unwrap_or_default())
     }
 }

@@ -206,7 +206,7 @@ impl ChartCompiler<'_> {
             node_sets: self.node_sets(&states),
             reads: self.reads(&triggers),
             sources: self.sources(&states, &triggers),
-            script_places: scripts::script_locations(self.chart, &self.scripts),
+            script_locations: scripts::script_locations(self.chart, &self.scripts),
             max_activities: max_activities(&states),
             selection_order: selection_order::order(&self.layout, &joins, &self.semantics),
             joins,
@@ -475,14 +475,14 @@ fn awaited_events(states: &[CompiledNode], triggers: &[EventFilter]) -> BTreeSet
 /// most, an AND the sum of its regions.
 fn max_activities(states: &[CompiledNode]) -> usize {
     let mut inside = vec![0; states.len()];
-    let mut most = 0;
+    let mut max = 0;
     for (position, state) in states.iter().enumerate() {
-        most = inside[position] + usize::from(state.activity.is_some());
+        max = inside[position] + usize::from(state.activity.is_some());
         let Some(parent) = state.parent.map(NodeIndex::index) else { continue };
         inside[parent] = match states[parent].kind {
-            NodeKind::And => inside[parent] + most,
-            _ => inside[parent].max(most),
+            NodeKind::And => inside[parent] + max,
+            _ => inside[parent].max(max),
         };
     }
-    most
+    max
 }

@@ -233,9 +233,9 @@ impl CompoundPathSearch<'_> {
                     self.path_through_join(state, target, join, paths)
                 }
                 _ => {
-                    let mut trail =
+                    let mut path =
                         PartialPath { open: smallvec![Frontier::Segment(id)], ..PartialPath::default() };
-                    self.follow(PathStart::States(state, &[], None), &mut trail, paths);
+                    self.follow(PathStart::States(state, &[], None), &mut path, paths);
                 }
             }
         }
@@ -256,10 +256,10 @@ impl CompoundPathSearch<'_> {
             return;
         }
         let segments = PathVec::from_slice(&self.roles.incoming[node.0 as usize]);
-        let mut trail =
+        let mut path =
             PartialPath { segments, open: smallvec![Frontier::Node(node)], ..PartialPath::default() };
         let begin = PathStart::States(first, others, Some(EnablingCondition::AllCompleted(join)));
-        self.follow(begin, &mut trail, paths);
+        self.follow(begin, &mut path, paths);
     }
 
     /// The paths out of each HISTORY, used when there is no record.
@@ -285,67 +285,67 @@ impl CompoundPathSearch<'_> {
 
     fn paths_out_of_dynamic(&mut self, node: NodeId, region: ScopeId) -> Vec<CompoundPath> {
         let mut paths = Vec::new();
-        let mut trail = PartialPath { open: smallvec![Frontier::Node(node)], ..PartialPath::default() };
-        self.follow(PathStart::Late(node, region), &mut trail, &mut paths);
+        let mut path = PartialPath { open: smallvec![Frontier::Node(node)], ..PartialPath::default() };
+        self.follow(PathStart::Late(node, region), &mut path, &mut paths);
         paths
     }
 
     /// Follows paths depth first; chains of connectors are short and acyclic, which has been
-    /// checked. The trail is restored.
-    fn follow(&mut self, begin: PathStart<'_>, trail: &mut PartialPath, paths: &mut Vec<CompoundPath>) {
+    /// checked. The path is restored.
+    fn follow(&mut self, begin: PathStart<'_>, path: &mut PartialPath, paths: &mut Vec<CompoundPath>) {
         if self.count > MAX_WAYS {
             return;
         }
-        let Some(open) = trail.open.pop() else {
-            self.complete(begin, trail, paths);
+        let Some(open) = path.open.pop() else {
+            self.complete(begin, path, paths);
             return;
         };
         match open {
             Frontier::Node(node) => {
                 for index in 0..self.outgoing[node.0 as usize].len() {
-                    trail.open.push(Frontier::Segment(self.outgoing[node.0 as usize][index]));
-                    self.follow(begin, trail, paths);
-                    trail.open.pop();
+                    path.open.push(Frontier::Segment(self.outgoing[node.0 as usize][index]));
+                    self.follow(begin, path, paths);
+                    path.open.pop();
                 }
             }
-            Frontier::Segment(id) => self.take(begin, id, trail, paths),
+            Frontier::Segment(id) => self.take(begin, id, path, paths),
         }
-        trail.open.push(open);
+        path.open.push(open);
     }
 
     fn take(
         &mut self,
         begin: PathStart<'_>,
         id: TransitionId,
-        trail: &mut PartialPath,
+        path: &mut PartialPath,
         paths: &mut Vec<CompoundPath>,
     ) {
         let target = self.chart.transition(id).target;
-        let (open, ends) = (trail.open.len(), trail.ends.len());
-        trail.segments.push(id);
-        let arrival = self.arrival(begin, target, trail);
+        let (open, ends) = (path.open.len(), path.ends.len());
+        path.segments.push(id);
+        let arrival = self.arrival(begin, target, path);
         if let Some(arrival) = arrival {
-            paths.extend(self.path_that_arrives(begin, arrival, trail));
-            trail.arrival = Some(PathArrival { passes: true, ..arrival });
+            paths.extend(self.path_that_arrives(begin, arrival, path));
+            path.arrival = Some(PathArrival { passes: true, ..arrival });
         }
         match self.roles.of(target) {
-            NodeRole::Branch | NodeRole::Join => trail.open.push(Frontier::Node(target)),
+            NodeRole::Branch | NodeRole::Join => path.open.push(Frontier::Node(target)),
             NodeRole::Fork => {
                 let segments = self.outgoing[target.0 as usize].iter().rev();
-                trail.open.extend(segments.map(|&id| Frontier::Segment(id)));
+                path.open.extend(segments.map(|&id| Frontier::Segment(id)));
             }
-            _ => trail.ends.push(target),
+            _ => path.ends.push(target),
         }
-        self.follow(begin, trail, paths);
-        trail.segments.pop();
-        trail.open.truncate(open);
-        trail.ends.truncate(ends);
+        self.follow(begin, path, paths);
+        path.segments.pop();
+        path.open.truncate(open);
+        path.ends.truncate(ends);
         if arrival.is_some() {
-            trail.arrival = None;
+            path.arrival = None;
         }
     }
 
-    fn complete(&mut self, begin: PathStart<'_>, trail: &PartialPath, paths: &mut Vec<CompoundPath>) {
+    fn complete(&mut self, begin: PathStart<'_>, partial: &PartialPath, paths: &mut Vec<CompoundPath>) {
         self.count += 1;
         let source = match begin {
             PathStart::States(source, ..) | PathStart::Late(source, _) => source,
@@ -354,28 +354,28 @@ impl CompoundPathSearch<'_> {
             let path = self.names.name(source);
             let message = format!("more than {MAX_WAYS} compound transitions, up to those out of `{path}`");
             self.errors.push(Diagnostic::error("M06", Span::default(), message));
-        } else if trail.ends.len() > 1 && trail.ends.iter().any(|&end| self.leads_to_terminate(end)) {
-            self.refuse_fork_that_stops(trail);
-        } else if trail.ends.len() > 1 && !self.are_orthogonal(&trail.ends) {
-            self.refuse_fork(trail);
+        } else if partial.ends.len() > 1 && partial.ends.iter().any(|&end| self.leads_to_terminate(end)) {
+            self.refuse_fork_that_stops(partial);
+        } else if partial.ends.len() > 1 && !self.are_orthogonal(&partial.ends) {
+            self.refuse_fork(partial);
         } else {
             paths.extend(match begin {
-                PathStart::Late(source, region) => Some(self.dynamic_path(source, region, trail)),
+                PathStart::Late(source, region) => Some(self.dynamic_path(source, region, partial)),
                 PathStart::States(source, others, condition) => {
-                    self.compound_path(source, others, condition, trail)
+                    self.compound_path(source, others, condition, partial)
                 }
             });
         }
     }
 
     /// A path that is the dynamic part of others, which determine its scope.
-    fn dynamic_path(&mut self, source: NodeId, region: ScopeId, trail: &PartialPath) -> CompoundPath {
+    fn dynamic_path(&mut self, source: NodeId, region: ScopeId, path: &PartialPath) -> CompoundPath {
         CompoundPath {
-            segments: trail.segments.clone(),
+            segments: path.segments.clone(),
             source,
             others: Vec::new(),
             scope: source,
-            leaves: self.leaves(&trail.ends, region),
+            leaves: self.leaves(&path.ends, region),
             region,
             condition: None,
             change: ConfigurationChange::None,
@@ -388,27 +388,27 @@ impl CompoundPathSearch<'_> {
         source: NodeId,
         others: &[NodeId],
         condition: Option<EnablingCondition>,
-        trail: &PartialPath,
+        path: &PartialPath,
     ) -> Option<CompoundPath> {
-        let Some((scope, change)) = self.scope(source, others, trail) else {
-            self.refuse(source, trail);
+        let Some((scope, change)) = self.scope(source, others, path) else {
+            self.refuse(source, path);
             return None;
         };
         let region = self.regions[scope.0 as usize];
-        let condition = match trail.arrival {
-            Some(_) => self.arrival_condition(trail),
-            None => condition.or_else(|| self.condition(source, trail)),
+        let condition = match path.arrival {
+            Some(_) => self.arrival_condition(path),
+            None => condition.or_else(|| self.condition(source, path)),
         };
         Some(CompoundPath {
-            segments: trail.segments.clone(),
+            segments: path.segments.clone(),
             source,
             others: others.to_vec(),
             scope,
-            leaves: self.leaves(&trail.ends, region),
+            leaves: self.leaves(&path.ends, region),
             region,
             condition,
             change,
-            arrival: trail.arrival,
+            arrival: path.arrival,
         })
     }
 
@@ -445,8 +445,8 @@ impl CompoundPathSearch<'_> {
         node_span::are_orthogonal(self.chart, self.layout, &nodes)
     }
 
-    fn refuse_fork_that_stops(&mut self, trail: &PartialPath) {
-        let stops = trail.ends.iter().copied().find(|&end| self.leads_to_terminate(end));
+    fn refuse_fork_that_stops(&mut self, path: &PartialPath) {
+        let stops = path.ends.iter().copied().find(|&end| self.leads_to_terminate(end));
         let message = format!(
             "a FORK leads to `{}`, which stops the chart",
             self.names.name(stops.unwrap_or(Statechart::ROOT))
@@ -455,15 +455,15 @@ impl CompoundPathSearch<'_> {
         self.errors.push(Diagnostic::error("M04", Span::default(), message).with_hint(hint));
     }
 
-    fn refuse_fork(&mut self, trail: &PartialPath) {
-        let ends: Vec<String> = trail.ends.iter().map(|&end| self.names.name(end)).collect();
+    fn refuse_fork(&mut self, path: &PartialPath) {
+        let ends: Vec<String> = path.ends.iter().map(|&end| self.names.name(end)).collect();
         let message = format!("a FORK leads to `{}`, which cannot be active together", ends.join("` and `"));
         let hint = "the branches of a FORK lead to different regions of one AND";
         self.errors.push(Diagnostic::error("M04", Span::default(), message).with_hint(hint));
     }
 
-    fn refuse(&mut self, source: NodeId, trail: &PartialPath) {
-        let ends: Vec<String> = trail.ends.iter().map(|&end| self.names.name(end)).collect();
+    fn refuse(&mut self, source: NodeId, path: &PartialPath) {
+        let ends: Vec<String> = path.ends.iter().map(|&end| self.names.name(end)).collect();
         let (source, target) = (self.names.name(source), ends.join("` and `"));
         let message = format!("no transition can lead from `{source}` to `{target}`");
         let hint = "what is internal stays inside its source";
@@ -472,16 +472,16 @@ impl CompoundPathSearch<'_> {
 
     /// When a path without a trigger may be taken, which depends on the guard of its first segment.
     /// A completion that is examined once is discarded if the state is no longer complete by then.
-    fn condition(&self, source: NodeId, trail: &PartialPath) -> Option<EnablingCondition> {
-        let first = &self.chart.transition(*trail.segments.first()?).expression;
+    fn condition(&self, source: NodeId, path: &PartialPath) -> Option<EnablingCondition> {
+        let first = &self.chart.transition(*path.segments.first()?).expression;
         if first.trigger.is_some() {
             return None;
         }
         let kind = self.chart.node(source).kind;
-        let interrupts = trail.segments.iter().any(|&id| self.chart.transition(id).interrupts);
+        let interrupts = path.segments.iter().any(|&id| self.chart.transition(id).interrupts);
         let waits = matches!(kind, NodeKind::Or | NodeKind::And)
             && first.guard.is_some()
-            && trail.ends[..] != [source];
+            && path.ends[..] != [source];
         Some(match self.semantics.eventless {
             _ if kind == NodeKind::Start => EnablingCondition::Always,
             CompletionTrigger::Always => EnablingCondition::Always,

@@ -43,8 +43,13 @@ impl ChartCompiler<'_> {
 
     fn step(&self, segment: &PathSegment<'_>, ends: &mut dyn Iterator<Item = PathEnd>) -> SegmentStep {
         let (path, target) = (segment.path, segment.transition.target);
-        let mut step =
-            SegmentStep { exits: None, empties: false, effects: None, enters: Box::default(), end: None };
+        let mut step = SegmentStep {
+            exits: None,
+            empties_composite: false,
+            effects: None,
+            enters: Box::default(),
+            end: None,
+        };
         let is_last = segment.index + 1 == path.segments.len();
         match path.change {
             ConfigurationChange::Vacates if is_last => {
@@ -74,7 +79,7 @@ impl ChartCompiler<'_> {
         }
         let boundary = self.boundary(segment);
         step.exits = self.exits(segment, boundary);
-        step.empties = self.kind(target) == NodeKind::ExitPoint && self.parent(target) == boundary;
+        step.empties_composite = self.kind(target) == NodeKind::ExitPoint && self.parent(target) == boundary;
         let (around, entered) = match self.kind(target) {
             NodeKind::Or | NodeKind::And | NodeKind::Basic | NodeKind::End | NodeKind::Start => {
                 (Some(target), ends.next().map(|end| self.leaf(end)))

@@ -160,8 +160,8 @@ impl<H: Host> Macrostep<'_, H> {
         }
         let mut known = 0;
         while !lots.is_empty() {
-            let lot = lots.remove(self.next_weighted_segment(&lots, &mut known));
-            let found = self.try_segment(lot, weight.siblings.end, search);
+            let branch = lots.remove(self.next_weighted_segment(&lots, &mut known));
+            let found = self.try_segment(branch, weight.siblings.end, search);
             if found.is_some() {
                 return found;
             }
@@ -174,11 +174,11 @@ impl<H: Host> Macrostep<'_, H> {
     fn next_weighted_segment(&mut self, lots: &[WeightedSegment], known: &mut usize) -> usize {
         while let Some(&drawn) = self.run.drawn_segments.get(*known) {
             *known += 1;
-            if let Some(index) = lots.iter().position(|lot| lot.segment == drawn) {
+            if let Some(index) = lots.iter().position(|branch| branch.segment == drawn) {
                 return index;
             }
         }
-        let weights: SmallVec<[f64; 8]> = lots.iter().map(|lot| lot.weight).collect();
+        let weights: SmallVec<[f64; 8]> = lots.iter().map(|branch| branch.weight).collect();
         let index = self.run.chooser.draw(&weights);
         self.run.drawn_segments.push(lots[index].segment);
         *known += 1;
@@ -210,16 +210,16 @@ impl<H: Host> Macrostep<'_, H> {
     /// Tries all paths that begin with a segment: its branches, which are contiguous.
     fn try_segment(
         &mut self,
-        lot: WeightedSegment,
+        weighted: WeightedSegment,
         end: usize,
         search: BranchQuery<'_>,
     ) -> Option<CompoundTransitionId> {
         let chart = self.chart;
-        let mut index = lot.first;
+        let mut index = weighted.first;
         while index < end {
             let branch = &chart.branches[index];
             let segment = branch.weight.map(|weight| chart.weights[weight].segment);
-            if segment != Some(lot.segment) {
+            if segment != Some(weighted.segment) {
                 return None;
             }
             if self.opens(branch, search) {
@@ -321,8 +321,8 @@ impl<H: Host> Macrostep<'_, H> {
         }
         let mut known = 0;
         while !lots.is_empty() {
-            let lot = lots.remove(self.next_weighted_segment(&lots, &mut known));
-            let found = self.scan_behind(alternatives[lot.first], depth, search);
+            let branch = lots.remove(self.next_weighted_segment(&lots, &mut known));
+            let found = self.scan_behind(alternatives[branch.first], depth, search);
             if found.is_some() {
                 return found;
             }

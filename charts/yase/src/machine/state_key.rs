@@ -165,19 +165,19 @@ impl Machine {
         self.run.queues.all().any(|occurrence| occurrence.event == event)
     }
 
-    /// Keeps the oldest `most` waiting occurrences of each event and discards the others; returns
+    /// Keeps the oldest `max` waiting occurrences of each event and discards the others; returns
     /// the events of which it has discarded any. For explorations, which would otherwise find a new
     /// state each time that an event is raised and not taken.
-    pub fn limit_queues(&mut self, most: usize) -> Vec<EventId> {
+    pub fn limit_queues(&mut self, max: usize) -> Vec<EventId> {
         let queues = &mut self.run.queues;
-        if queues.all().nth(most).is_none() {
+        if queues.all().nth(max).is_none() {
             return Vec::new();
         }
         let mut waiting: Vec<(EventId, u64)> = queues.all().map(|it| (it.event, it.number)).collect();
         waiting.sort_unstable();
         let cut: Vec<(EventId, u64)> = waiting
             .chunk_by(|one, other| one.0 == other.0)
-            .flat_map(|same| same.iter().skip(most))
+            .flat_map(|same| same.iter().skip(max))
             .copied()
             .collect();
         if !cut.is_empty() {

@@ -260,7 +260,7 @@ impl<'a, H: Host> Macrostep<'a, H> {
         }
         let record = TraceRecord {
             time: run.now,
-            occasion,
+            cause: occasion,
             selected: &run.selection.selected,
             preempted: &run.selection.preempted,
             held: &run.selection.held,

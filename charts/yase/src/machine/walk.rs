@@ -84,7 +84,7 @@ impl<H: Host> Macrostep<'_, H> {
 
     fn leave_for(&mut self, step: &SegmentStep) {
         let Some((first, last)) = step.exits else { return };
-        if step.empties {
+        if step.empties_composite {
             let owner = NodeIndex(last.0 + 1);
             self.run.record_histories(self.chart, owner, owner);
         }

@@ -60,21 +60,21 @@ impl CheckStatus {
 struct CheckResult {
     area: &'static str,
     state: CheckStatus,
-    what: String,
+    message: String,
     hint: Option<String>,
 }
 
 impl CheckResult {
     fn ok(area: &'static str, what: impl Into<String>) -> CheckResult {
-        CheckResult { area, state: CheckStatus::Ok, what: what.into(), hint: None }
+        CheckResult { area, state: CheckStatus::Ok, message: what.into(), hint: None }
     }
 
     fn warning(area: &'static str, what: impl Into<String>, hint: impl Into<String>) -> CheckResult {
-        CheckResult { area, state: CheckStatus::Warning, what: what.into(), hint: Some(hint.into()) }
+        CheckResult { area, state: CheckStatus::Warning, message: what.into(), hint: Some(hint.into()) }
     }
 
     fn error(area: &'static str, what: impl Into<String>, hint: impl Into<String>) -> CheckResult {
-        CheckResult { area, state: CheckStatus::Error, what: what.into(), hint: Some(hint.into()) }
+        CheckResult { area, state: CheckStatus::Error, message: what.into(), hint: Some(hint.into()) }
     }
 }
 
@@ -141,7 +141,7 @@ fn write(
     format: Format,
     console: &mut CommandOutput<'_>,
 ) -> Result<(), CommandFailure> {
-    let CheckResult { area, state, what, hint } = finding;
+    let CheckResult { area, state, message: what, hint } = finding;
     match format {
         Format::Text => {
             writeln!(console.out, "{:7}  {area:13}  {what}", state.name())?;

@@ -176,15 +176,15 @@ fn overlay_path(file: &Path, folder: &Path) -> PathBuf {
 
 /// A row of the table: object, kind and position.
 struct SeenObject<'a> {
-    what: &'static str,
+    object: &'static str,
     kind: &'static str,
     sight: &'a GroundObject,
 }
 
 fn objects_of(seen: &Detections) -> Vec<SeenObject<'_>> {
-    let ball = seen.ball.iter().map(|sight| SeenObject { what: "ball", kind: "", sight });
+    let ball = seen.ball.iter().map(|sight| SeenObject { object: "ball", kind: "", sight });
     let posts = seen.posts.iter().map(|post| SeenObject {
-        what: match post.side {
+        object: match post.side {
             PostSide::Left => "left post",
             PostSide::Right => "right post",
             PostSide::Unknown => "post",
@@ -197,7 +197,7 @@ fn objects_of(seen: &Detections) -> Vec<SeenObject<'_>> {
         sight: &post.sight,
     });
     let robots = seen.robots.iter().map(|robot| SeenObject {
-        what: "robot",
+        object: "robot",
         kind: match robot.jersey {
             Jersey::Blue => "blue",
             Jersey::Red => "red",
@@ -217,7 +217,7 @@ fn report(
 ) -> Result<(), CommandFailure> {
     let objects = objects_of(seen);
     if format == Format::Json {
-        let objects = objects.iter().map(|SeenObject { what, kind, sight }| {
+        let objects = objects.iter().map(|SeenObject { object: what, kind, sight }| {
             let area = &sight.area;
             json!({
                 "what": what, "kind": kind, "distance": sight.distance, "bearing": sight.bearing,
@@ -240,7 +240,7 @@ fn report(
     let border = if seen.border.is_empty() { "no field border" } else { "a field border" };
     writeln!(console.out, "{}: {border}, {lines} lines of {points} points", file.display())?;
     if !objects.is_empty() {
-        let rows = objects.iter().map(|SeenObject { what, kind, sight }| {
+        let rows = objects.iter().map(|SeenObject { object: what, kind, sight }| {
             let area = &sight.area;
             [
                 (*what).to_owned(),

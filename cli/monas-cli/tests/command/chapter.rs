@@ -11,12 +11,12 @@ use crate::kit::root;
 use crate::reading::{Reading, read_in};
 
 /// Runs a chapter with at least this many commands.
-fn read(name: &str, least: usize) -> Reading {
+fn read(name: &str, min: usize) -> Reading {
     let folder = project();
     for part in ["config", "docs"] {
         copy(&root().join(part), &folder.path().join(part));
     }
-    read_in(folder, name, least)
+    read_in(folder, name, min)
 }
 
 #[test]

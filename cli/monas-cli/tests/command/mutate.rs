@@ -36,7 +36,7 @@ fn bless(role: &str, survivors: &[String]) {
     fs::write(path, text).expect("the folder takes files");
 }
 
-fn is_well_tested(role: &str, least: usize) {
+fn is_well_tested(role: &str, min: usize) {
     let model = format!("models/{role}.srm");
     let command =
         ["model", "mutate", &model, "--scenarios", "tests/scenarios", "--least", "80", "--format", "json"];
@@ -45,7 +45,7 @@ fn is_well_tested(role: &str, least: usize) {
     let lines: Vec<Value> =
         out.lines().map(|line| serde_json::from_str(line).expect("an object a line")).collect();
     let (all, mutants) = lines.split_last().expect("all of them");
-    assert!(mutants.len() >= least && all["made"] == mutants.len(), "{all}");
+    assert!(mutants.len() >= min && all["made"] == mutants.len(), "{all}");
     for mutant in mutants {
         assert!(mutant["line"].as_u64().is_some_and(|line| line > 1), "{mutant}");
     }

@@ -132,7 +132,7 @@ fn shown(line: &str) -> &str {
 }
 
 /// Runs a chapter with at least this many commands in a folder.
-pub(crate) fn read_in(folder: tempfile::TempDir, name: &str, least: usize) -> Reading {
+pub(crate) fn read_in(folder: tempfile::TempDir, name: &str, min: usize) -> Reading {
     let chapter = fs::read_to_string(root().join("docs").join(name)).expect("the chapter");
     let mut reading = Reading {
         folder,
@@ -143,7 +143,7 @@ pub(crate) fn read_in(folder: tempfile::TempDir, name: &str, least: usize) -> Re
         commands: 0,
     };
     blocks(&chapter).into_iter().for_each(|block| reading.read(block));
-    assert!(reading.commands >= least, "{name} has its commands");
+    assert!(reading.commands >= min, "{name} has its commands");
     for running in reading.background.drain(..) {
         assert_eq!(running.interrupt().code, Some(130));
     }

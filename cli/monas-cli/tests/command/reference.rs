@@ -76,8 +76,8 @@ fn kind_of(schema: &Map<String, Value>) -> String {
         (Some(Value::String(kind)), _) if kind == "integer" || kind == "number" => {
             let kind = if kind == "integer" { "whole number" } else { "number" };
             match (number("minimum"), number("maximum")) {
-                (Some(least), Some(most)) if most.len() < 10 => format!("{kind}, {least} to {most}"),
-                (Some(least), _) if !least.starts_with('-') => format!("{kind}, {least} at least"),
+                (Some(min), Some(max)) if max.len() < 10 => format!("{kind}, {min} to {max}"),
+                (Some(min), _) if !min.starts_with('-') => format!("{kind}, {min} at least"),
                 _ => kind.into(),
             }
         }

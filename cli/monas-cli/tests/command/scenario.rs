@@ -17,9 +17,9 @@ fn scenarios(role: &str) -> Vec<PathBuf> {
     files
 }
 
-fn all_hold(role: &str, least: usize) {
+fn all_hold(role: &str, min: usize) {
     let files = scenarios(role);
-    assert!(files.len() >= least, "{role} has {} scenarios", files.len());
+    assert!(files.len() >= min, "{role} has {} scenarios", files.len());
     for file in files {
         let model = format!("models/{role}.srm");
         let Answer { code, out, err } = monas(&["model", "run", &model, &file.to_string_lossy()]);

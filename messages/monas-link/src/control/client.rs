@@ -51,7 +51,7 @@ pub struct WatchStream {
     stream: UnixStream,
     /// Received bytes that have not been processed.
     bytes: Vec<u8>,
-    looked_at: usize,
+    searched: usize,
 }
 
 impl ControlClient {
@@ -139,7 +139,7 @@ impl ControlClient {
         let (pattern, more) = (patterns.next().unwrap_or_default(), patterns.collect());
         let watch = Some(Watch { host: host.into(), pattern, payload, more });
         self.send(&Request { watch, ..Request::default() })?;
-        Ok(WatchStream { stream: self.stream, bytes: Vec::new(), looked_at: 0 })
+        Ok(WatchStream { stream: self.stream, bytes: Vec::new(), searched: 0 })
     }
 
     fn send(&mut self, request: &Request) -> Result<(), Error> {
@@ -158,15 +158,13 @@ impl ControlClient {
 }
 
 impl WatchStream {
-    /// The next message; `None` if there is none within `patience`.
+    /// The next message; `None` if there is none within `timeout`.
     ///
     /// # Errors
     /// The connection is lost, or the run rejects the request.
-    pub fn wait(&mut self, patience: Duration) -> Result<Option<Seen>, Error> {
+    pub fn wait(&mut self, timeout: Duration) -> Result<Option<Seen>, Error> {
         // A timeout of zero would mean no timeout.
-        self.stream
-            .set_read_timeout(Some(patience.max(Duration::from_millis(1))))
-            .map_err(connection_lost)?;
+        self.stream.set_read_timeout(Some(timeout.max(Duration::from_millis(1)))).map_err(connection_lost)?;
         loop {
             if let Some(answer) = self.next()? {
                 return refusal(answer)?.seen.map(Some).ok_or_else(unexpected_reply);
@@ -186,7 +184,7 @@ impl WatchStream {
 
     /// The next reply, if it is complete.
     fn next(&mut self) -> Result<Option<Answer>, Error> {
-        let rest = &self.bytes[self.looked_at..];
+        let rest = &self.bytes[self.searched..];
         let Some((length, rest)) = rest.split_first_chunk::<4>() else {
             return Ok(self.discard_consumed());
         };
@@ -196,14 +194,14 @@ impl WatchStream {
         }
         let Some(bytes) = rest.get(..length) else { return Ok(self.discard_consumed()) };
         let answer = Answer::decode(bytes).map_err(|_| unexpected_reply())?;
-        self.looked_at += 4 + length;
+        self.searched += 4 + length;
         Ok(Some(answer))
     }
 
     /// Discards the processed bytes.
     fn discard_consumed(&mut self) -> Option<Answer> {
-        self.bytes.drain(..self.looked_at);
-        self.looked_at = 0;
+        self.bytes.drain(..self.searched);
+        self.searched = 0;
         None
     }
 }

@@ -82,7 +82,7 @@ pub struct NodeSettings {
     /// The access list.
     pub access: AccessList,
     /// Whether hosts without a link may send.
-    pub guests: bool,
+    pub accepts_unlinked: bool,
     /// The send budget.
     pub budget: Option<SendBudget>,
     /// Interval between heartbeats.
@@ -195,7 +195,8 @@ impl Node {
     /// # Errors
     /// A name is too long, there are too many topics, or the budget is too small for the controls.
     pub fn new(settings: NodeSettings) -> Result<Node, Error> {
-        let NodeSettings { host, incarnation, send, receive, access, guests, budget, beat } = settings;
+        let NodeSettings { host, incarnation, send, receive, access, accepts_unlinked: guests, budget, beat } =
+            settings;
         if host.is_empty() || host.len() > NAME_BYTES {
             let text = format!("the host's name `{host}` is not 1 to {NAME_BYTES} bytes long");
             return Err(Error::new(ErrorKind::Settings, text));

@@ -139,18 +139,18 @@ impl OutgoingStream {
     }
 
     /// Records that `peer` lacks messages `first..=last`. A message retransmitted less than
-    /// `patience` ago may still be in transit.
+    /// `timeout` ago may still be in transit.
     pub(crate) fn request_resend(
         &mut self,
         first: u64,
         last: u64,
         peer: &Arc<str>,
         now: Timestamp,
-        patience: Duration,
+        timeout: Duration,
     ) {
         let next = self.next;
         let wanted = |kept: &&RetainedMessage| (first..=last).contains(&kept.number) && kept.number < next;
-        let is_due = |kept: &&RetainedMessage| kept.sent_again.is_none_or(|at| now >= at + patience);
+        let is_due = |kept: &&RetainedMessage| kept.sent_again.is_none_or(|at| now >= at + timeout);
         let due = self.retained.iter().filter(wanted).filter(is_due).map(|kept| (kept.number, peer.clone()));
         self.repairs.extend(due);
     }

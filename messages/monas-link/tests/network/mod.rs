@@ -94,7 +94,7 @@ pub fn settings(host: &str, topics: Vec<LinkTopic>) -> NodeSettings {
         send: topics.clone(),
         receive: topics,
         access: AccessList::open(),
-        guests: false,
+        accepts_unlinked: false,
         budget: None,
         beat: Duration::from_millis(200),
     }

@@ -70,8 +70,8 @@ impl GeneratedFunctions {
             return; // the same on another blackboard
         }
         let message = body.target.rsplit("::").next().unwrap_or_default().to_ascii_lowercase();
-        let wish = identifier(&[&format!("{message}_{}", body.field)]);
-        let name = self.name(wish.clone());
+        let wanted = identifier(&[&format!("{message}_{}", body.field)]);
+        let name = self.name(wanted.clone());
         let input = parameter(&body.value);
         self.text.push(format!(
             "/// {}\npub(crate) fn {name}<'a>({input}: &GuardInput<'a>) -> Computed<'a> {{\n    {}\n}}\n",
@@ -80,13 +80,13 @@ impl GeneratedFunctions {
         ));
         let put = match self.puts.get(&(body.target.clone(), body.field.clone())) {
             Some(known) => known.clone(),
-            None => self.put(&wish, &body),
+            None => self.put(&wanted, &body),
         };
         self.values.insert(at, [body.target, format!("guards::{name}"), format!("guards::{put}")]);
     }
 
-    fn put(&mut self, wish: &str, body: &AssignmentBody) -> String {
-        let name = self.name(format!("set_{wish}"));
+    fn put(&mut self, wanted: &str, body: &AssignmentBody) -> String {
+        let name = self.name(format!("set_{wanted}"));
         let parameters = [format!("message: &mut {}", body.rust), "value: Value<'_>".to_owned()];
         let line = format!("pub(crate) fn {name}({}) -> Result<(), CallError> {{", parameters.join(", "));
         let head = match line.chars().count() <= MAX_LINE_LENGTH {
@@ -106,10 +106,10 @@ impl GeneratedFunctions {
     }
 
     /// A name that no other function has.
-    fn name(&mut self, wish: String) -> String {
-        let numbered = (2..).map(|count| format!("{wish}_{count}"));
-        let free = std::iter::once(wish.clone()).chain(numbered).find(|name| !self.taken.contains(name));
-        let name = free.unwrap_or(wish);
+    fn name(&mut self, wanted: String) -> String {
+        let numbered = (2..).map(|count| format!("{wanted}_{count}"));
+        let free = std::iter::once(wanted.clone()).chain(numbered).find(|name| !self.taken.contains(name));
+        let name = free.unwrap_or(wanted);
         self.taken.insert(name.clone());
         name
     }

@@ -82,17 +82,17 @@ impl<'a> NameTable<'a> {
         let topic = self.topic(source).ok_or_else(|| unknown("?"))?;
         let rust = self.words.messages.get(&topic.message).ok_or_else(|| unknown(&topic.message))?.clone();
         let last = topic.path.rsplit('/').next().unwrap_or_default();
-        let wish = match &source.origin {
+        let wanted = match &source.origin {
             Origin::Own => last.to_owned(),
             Origin::Host(from) | Origin::Publisher(from) => format!("{from}_{last}"),
             Origin::HostPublisher { host, publisher } => format!("{host}_{publisher}_{last}"),
             _ => return Err(unknown(&topic.message)),
         };
-        let wish = shouted(&wish);
+        let wanted = shouted(&wanted);
         let is_taken = |name: &String| self.sources.iter().any(|known| known.constant == *name);
-        let numbered = (2..).map(|count| format!("{wish}_{count}"));
-        let constant = std::iter::once(wish.clone()).chain(numbered).find(|name| !is_taken(name));
-        let constant = constant.unwrap_or(wish);
+        let numbered = (2..).map(|count| format!("{wanted}_{count}"));
+        let constant = std::iter::once(wanted.clone()).chain(numbered).find(|name| !is_taken(name));
+        let constant = constant.unwrap_or(wanted);
         self.sources.push(SourceWord {
             source: source.clone(),
             constant: constant.clone(),

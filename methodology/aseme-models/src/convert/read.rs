@@ -145,12 +145,12 @@ fn formulas(model: &Model, text: &str) -> Vec<Diagnostic> {
     match model {
         Model::Srm(srm) => {
             let roles = srm.roles.iter();
-            roles.flat_map(|role| role_formulas(&role.liveness, role.liveness_place.0, text)).collect()
+            roles.flat_map(|role| role_formulas(&role.liveness, role.liveness_position.0, text)).collect()
         }
         Model::Aip(aip) => {
             let parts = aip.participants.iter().filter(|part| !part.liveness.is_empty());
             parts
-                .flat_map(|part| participant_formulas(&part.name, &part.liveness, part.liveness_place.0))
+                .flat_map(|part| participant_formulas(&part.name, &part.liveness, part.liveness_position.0))
                 .collect()
         }
         _ => Vec::new(),

@@ -154,9 +154,9 @@ impl<'a> FormText<'a> {
         };
         let old: Vec<&str> = lines.iter().map(|line| line.content.text.as_str()).collect();
         let same = old.iter().zip(&new).take_while(|(old, new)| old == new).count();
-        let most = (old.len() - same).min(new.len() - same);
+        let max = (old.len() - same).min(new.len() - same);
         let end =
-            old.iter().rev().zip(new.iter().rev()).take(most).take_while(|(old, new)| old == new).count();
+            old.iter().rev().zip(new.iter().rev()).take(max).take_while(|(old, new)| old == new).count();
         let (replaced, given) = (&lines[same..lines.len() - end], &new[same..new.len() - end]);
         let mut edits = Vec::new();
         for (line, text) in replaced.iter().zip(given) {

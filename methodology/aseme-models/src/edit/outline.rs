@@ -233,8 +233,8 @@ fn kind(metamodel: &Metamodel, feature: &Feature) -> FieldKind {
     match feature.kind {
         FeatureKind::Formulas => FieldKind::Formulas,
         FeatureKind::Choice(choices) => FieldKind::Choice(choices.to_vec()),
-        FeatureKind::Links { class, most, .. } => {
-            FieldKind::Links(metamodel.classes[class].header, most == UNLIMITED)
+        FeatureKind::Links { class, max, .. } => {
+            FieldKind::Links(metamodel.classes[class].header, max == UNLIMITED)
         }
         FeatureKind::Text | FeatureKind::Opposite { .. } => FieldKind::Text,
     }

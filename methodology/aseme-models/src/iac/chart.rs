@@ -223,7 +223,7 @@ impl StatechartBuilder {
     /// Positions within an expression are exact only if the file contains its text verbatim;
     /// otherwise they are the whole expression.
     fn expression(&self, transition: &IacTransition) -> (TransitionExpression, Vec<Diagnostic>) {
-        let TextPosition(span) = transition.te_place;
+        let TextPosition(span) = transition.te_position;
         let literal = span.end - span.start == transition.te.len() && span != Span::default();
         let (expression, findings) =
             parse_transition_at(&transition.te, if literal { span.start } else { 0 });

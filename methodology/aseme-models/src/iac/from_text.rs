@@ -333,7 +333,7 @@ impl Reader {
         let mut transition = IacTransition {
             te: without_null(&self.plain(&te)),
             position: TextPosition(content.span),
-            te_place: TextPosition(if te.text.is_empty() { content.span } else { te.span }),
+            te_position: TextPosition(if te.text.is_empty() { content.span } else { te.span }),
             ..IacTransition::default()
         };
         self.modifiers(&modifiers, &mut transition);

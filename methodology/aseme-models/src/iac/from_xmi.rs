@@ -250,7 +250,7 @@ impl Reader {
             target,
             metadata: text("metadata"),
             position: TextPosition(xmi::tag(element)),
-            te_place: TextPosition(te_place),
+            te_position: TextPosition(te_place),
             ..IacTransition::default()
         });
     }

@@ -287,7 +287,7 @@ fn unwritable(chart: &Iac) -> Vec<Diagnostic> {
     let transitions = chart
         .transitions
         .iter()
-        .flat_map(|it| [(it.te_place, &it.te), (it.position, &it.name), (it.position, &it.metadata)]);
+        .flat_map(|it| [(it.te_position, &it.te), (it.position, &it.name), (it.position, &it.metadata)]);
     let variables = chart.variables.iter().flat_map(|it| [(it.position, &it.name), (it.position, &it.kind)]);
     let model = [&chart.name, &chart.description, &chart.metadata]
         .map(|text| (yase::expression::TextPosition::default(), text));

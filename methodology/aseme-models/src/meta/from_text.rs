@@ -150,8 +150,8 @@ impl Reader<'_> {
         object.values[index] = match (kind, setting.block) {
             (FeatureKind::Formulas, Some(lines)) => FeatureValue::Text(block_text(lines)),
             (FeatureKind::Choice(choices), _) => FeatureValue::Choice(self.choice(choices, &setting.value)),
-            (FeatureKind::Links { class, most, .. }, _) => {
-                FeatureValue::Links(self.links(class, most, &setting.value))
+            (FeatureKind::Links { class, max, .. }, _) => {
+                FeatureValue::Links(self.links(class, max, &setting.value))
             }
             _ => FeatureValue::Text(self.plain(&setting.value)),
         };
@@ -166,14 +166,14 @@ impl Reader<'_> {
         })
     }
 
-    fn links(&mut self, class: usize, most: usize, value: &SpannedText) -> Vec<usize> {
+    fn links(&mut self, class: usize, max: usize, value: &SpannedText) -> Vec<usize> {
         let words = list(value);
-        if words.len() > most {
-            let message = format!("there can be {most} here, not {}", words.len());
+        if words.len() > max {
+            let message = format!("there can be {max} here, not {}", words.len());
             self.report(Diagnostic::error("E0269", value.span, message).with_hint("keep the first"));
         }
-        let most = if most == UNLIMITED { words.len() } else { most };
-        words.iter().take(most).filter_map(|word| self.link(class, word)).collect()
+        let max = if max == UNLIMITED { words.len() } else { max };
+        words.iter().take(max).filter_map(|word| self.link(class, word)).collect()
     }
 
     fn link(&mut self, class: usize, word: &SpannedText) -> Option<usize> {

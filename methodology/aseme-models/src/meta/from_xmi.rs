@@ -137,9 +137,7 @@ impl Reader<'_> {
         object.values[index] = match class.features[index].kind {
             FeatureKind::Text | FeatureKind::Formulas => FeatureValue::Text(value.into()),
             FeatureKind::Choice(choices) => FeatureValue::Choice(self.choice(choices, value, span)),
-            FeatureKind::Links { class, most, .. } => {
-                FeatureValue::Links(self.links(class, most, value, span))
-            }
+            FeatureKind::Links { class, max, .. } => FeatureValue::Links(self.links(class, max, value, span)),
             FeatureKind::Opposite { .. } => FeatureValue::Derived,
         };
     }
@@ -153,17 +151,17 @@ impl Reader<'_> {
         })
     }
 
-    fn links(&mut self, class: usize, most: usize, value: &str, span: Span) -> Vec<usize> {
+    fn links(&mut self, class: usize, max: usize, value: &str, span: Span) -> Vec<usize> {
         if let Some(made) = self.text_of_older(class, value, span) {
             return vec![made];
         }
         let links: Vec<usize> =
             value.split_whitespace().filter_map(|word| self.link(class, word, span)).collect();
-        if links.len() > most {
-            let message = format!("there can be {most} here, not {}", links.len());
+        if links.len() > max {
+            let message = format!("there can be {max} here, not {}", links.len());
             self.report(Diagnostic::error("E0809", span, message));
         }
-        links.into_iter().take(if most == UNLIMITED { usize::MAX } else { most }).collect()
+        links.into_iter().take(if max == UNLIMITED { usize::MAX } else { max }).collect()
     }
 
     /// The object that a reference denotes.
@@ -249,11 +247,11 @@ impl Reader<'_> {
 
     /// Adds a link that only its opposite has, if the multiplicity allows it.
     fn answer(&mut self, class: usize, object: usize, feature: usize, target: usize) {
-        let FeatureKind::Links { most, .. } = self.metamodel.classes[class].features[feature].kind else {
+        let FeatureKind::Links { max, .. } = self.metamodel.classes[class].features[feature].kind else {
             return;
         };
         if let FeatureValue::Links(links) = &mut self.instance.objects[class][object].values[feature]
-            && links.len() < most
+            && links.len() < max
         {
             links.push(target);
         }
@@ -299,11 +297,11 @@ impl Reader<'_> {
     fn multiplicities(&mut self, root: Node<'_, '_>) {
         let mut found = Vec::new();
         for (class, objects) in self.metamodel.classes.iter().zip(&self.instance.objects) {
-            if objects.len() < class.least {
+            if objects.len() < class.min_count {
                 let message = format!(
                     "a {} has at least {} {}, this one {}",
                     self.metamodel.header,
-                    class.least,
+                    class.min_count,
                     class.feature,
                     objects.len()
                 );
@@ -313,10 +311,10 @@ impl Reader<'_> {
                 .iter()
                 .flat_map(|object| class.features.iter().enumerate().map(move |feature| (object, feature)))
             {
-                let FeatureKind::Links { least, .. } = feature.kind else { continue };
-                if object.links(index).len() < least {
+                let FeatureKind::Links { min, .. } = feature.kind else { continue };
+                if object.links(index).len() < min {
                     let message = format!(
-                        "the {} `{}` needs {least} `{}` at least",
+                        "the {} `{}` needs {min} `{}` at least",
                         class.header,
                         object.text(class.title),
                         feature.name

@@ -52,7 +52,7 @@ fn set_spans(eac: &mut Iac, protocol: &Protocol, parts: &[&Participant]) {
     for (index, node) in eac.nodes.iter().enumerate() {
         let part = if tops.contains(&index) { part_named(parts, &node.name) } else { None };
         let around = node.parent.and_then(|parent| positions.get(parent).copied());
-        positions[index] = part.map(|part| part.liveness_place).or(around).unwrap_or(protocol.position);
+        positions[index] = part.map(|part| part.liveness_position).or(around).unwrap_or(protocol.position);
     }
     for (node, position) in eac.nodes.iter_mut().zip(&positions) {
         node.position = *position;
@@ -77,7 +77,7 @@ pub fn protocol_formulas(aip: &Aip, protocol: &Protocol) -> (String, Vec<(usize,
     for participant in participants.iter().filter(|participant| !participant.liveness.trim().is_empty()) {
         formulas.push_str(&participant_formula(&participant.name, &participant.liveness));
         formulas.push('\n');
-        spans.push((formulas.len(), participant.liveness_place.0));
+        spans.push((formulas.len(), participant.liveness_position.0));
     }
     (formulas, spans)
 }

@@ -76,7 +76,7 @@ impl SystemRoles {
         };
         let (formulas, findings) = liveness::parse(&role.liveness);
         if findings.iter().any(Diagnostic::is_error) {
-            let span = role.liveness_place.0;
+            let span = role.liveness_position.0;
             return Err(findings.into_iter().map(|finding| Diagnostic { span, ..finding }).collect());
         }
         let first = formulas.formulas().first().map_or("", |formula| formula.name.as_str());

@@ -35,7 +35,7 @@ fn chart(
 ) -> Iac {
     let (formulas, findings) = liveness::parse(&role.liveness);
     let (chart, more) = transform::liveness_to_statechart(&formulas);
-    let span = role.liveness_place.0;
+    let span = role.liveness_position.0;
     let placed = |finding: Diagnostic| Diagnostic { span, ..finding };
     diagnostics.extend(findings.into_iter().chain(more).map(placed));
     let mut iac = Iac::from_statechart(&chart, ChartKind::Intra);

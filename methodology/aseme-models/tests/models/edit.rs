@@ -34,8 +34,8 @@ fn refused(text: &str, edit: &ModelEdit) -> String {
 fn difference<'a>(before: &'a str, after: &'a str) -> (Vec<&'a str>, Vec<&'a str>) {
     let (old, new): (Vec<&str>, Vec<&str>) = (before.split('\n').collect(), after.split('\n').collect());
     let same = old.iter().zip(&new).take_while(|(old, new)| old == new).count();
-    let most = old.len().min(new.len()) - same;
-    let end = old.iter().rev().zip(new.iter().rev()).take(most).take_while(|(old, new)| old == new).count();
+    let max = old.len().min(new.len()) - same;
+    let end = old.iter().rev().zip(new.iter().rev()).take(max).take_while(|(old, new)| old == new).count();
     (old[same..old.len() - end].to_vec(), new[same..new.len() - end].to_vec())
 }
 

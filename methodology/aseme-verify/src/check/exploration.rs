@@ -51,7 +51,7 @@ pub(crate) fn check(
         abstraction: &abstraction,
         found: &found,
         intended: DeadByDesign::new(subject),
-        blamed: known.iter().map(|diagnostic| diagnostic.span).collect(),
+        reported: known.iter().map(|diagnostic| diagnostic.span).collect(),
         is_whole: known.iter().all(|diagnostic| diagnostic.severity == Severity::Information),
     };
     let explored = ExplorationExtent::of(&found);
@@ -76,7 +76,7 @@ struct ExplorationCheck<'a> {
     found: &'a Exploration,
     intended: DeadByDesign,
     /// The spans of earlier findings; their consequences are not reported again.
-    blamed: BTreeSet<Span>,
+    reported: BTreeSet<Span>,
     /// Whether no other check has a finding above information.
     is_whole: bool,
 }
@@ -211,8 +211,8 @@ impl ExplorationCheck<'_> {
         let never = ids.filter(|&id| {
             let spans = &self.subject.spans;
             let (guard, whole) = (spans.guard(id), spans.transition(id));
-            let is_told =
-                guard != Span::default() && (self.blamed.contains(&guard) || self.blamed.contains(&whole));
+            let is_told = guard != Span::default()
+                && (self.reported.contains(&guard) || self.reported.contains(&whole));
             !self.found.was_taken(id)
                 && self.was_possible(id)
                 && !self.intended.is_never(id)
@@ -431,8 +431,8 @@ impl ExplorationCheck<'_> {
     fn pool(&self, settings: &CheckSettings) -> Option<Finding> {
         let size = settings.pool.unwrap_or(DEFAULT_POOL_SIZE);
         let state = self.found.first(|state| state.is_exact && state.running.len() > size)?;
-        let most = self.found.states().iter().map(|state| state.running.len()).max()?;
-        let message = format!("up to {most} activities run at once, and the pool runs {size}");
+        let max = self.found.states().iter().map(|state| state.running.len()).max()?;
+        let message = format!("up to {max} activities run at once, and the pool runs {size}");
         let found = self.subject.warn("M21", Statechart::ROOT, message);
         let found =
             found.with_hint("the others wait: give the pool more threads, or the activities priorities");

@@ -140,7 +140,7 @@ fn unknown_names(
         .map(|name| {
             let message =
                 format!("`{name}` in the formulas of `{}` is not an activity of the model", role.name);
-            let found = warning("S05", role.liveness_place.0, message, "add an activity of that name");
+            let found = warning("S05", role.liveness_position.0, message, "add an activity of that name");
             found.with_suggestion(suggestions, &name, known())
         })
         .collect()

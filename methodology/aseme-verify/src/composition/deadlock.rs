@@ -90,11 +90,11 @@ fn step_of(product: &GlobalProduct<'_>, edge: &ProductEdge, robot: usize) -> Opt
 fn worst_from(state: usize, next: &[Vec<usize>], count: &dyn Fn(usize) -> usize) -> usize {
     let mut seen = std::collections::BTreeSet::from([state]);
     let mut open = std::collections::VecDeque::from([state]);
-    let (mut worst, mut most) = (state, count(state));
+    let (mut worst, mut max) = (state, count(state));
     while let Some(state) = open.pop_front() {
         let stuck = count(state);
-        if stuck > most {
-            (worst, most) = (state, stuck);
+        if stuck > max {
+            (worst, max) = (state, stuck);
         }
         open.extend(next[state].iter().copied().filter(|&to| seen.insert(to)));
     }

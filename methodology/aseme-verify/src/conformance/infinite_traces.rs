@@ -66,7 +66,7 @@ struct LoopProduct {
 /// The strongly connected components of repeatable steps: the component of each state, and the `x~`
 /// that start in each.
 struct LoopComponents {
-    of_place: Vec<usize>,
+    component_of: Vec<usize>,
     begun: Vec<BTreeSet<LoopId>>,
 }
 
@@ -113,18 +113,18 @@ impl LoopProduct {
             steps.iter().filter(|(_, (recurs, _))| *recurs).map(|(to, _)| (*to, ())).collect()
         };
         let next: Vec<Vec<(usize, ())>> = self.next.iter().map(recurring).collect();
-        let of_place = strongly_connected_components(&next);
-        let count = of_place.iter().max().map_or(0, |last| last + 1);
+        let component_of = strongly_connected_components(&next);
+        let count = component_of.iter().max().map_or(0, |last| last + 1);
         let mut begun = vec![BTreeSet::new(); count];
         for (from, steps) in self.next.iter().enumerate() {
             for (to, (recurs, numbers)) in steps {
                 let is_owed = language.owed_loops(self.states[from].1).is_some();
-                if *recurs && is_owed && of_place[from] == of_place[*to] {
-                    begun[of_place[from]].extend(numbers);
+                if *recurs && is_owed && component_of[from] == component_of[*to] {
+                    begun[component_of[from]].extend(numbers);
                 }
             }
         }
-        LoopComponents { of_place, begun }
+        LoopComponents { component_of, begun }
     }
 
     /// The states from which the formulas can be satisfied: the accepting ones and their
@@ -145,7 +145,8 @@ impl LoopProduct {
             let has_ended = graph.ends[state] && (may_end_early || language.may_end(rest));
             // without required loops the chart may be silent forever; whether it could end is
             // checked elsewhere
-            let is_satisfied = |owed: BTreeSet<LoopId>| owed.is_subset(&turns.begun[turns.of_place[index]]);
+            let is_satisfied =
+                |owed: BTreeSet<LoopId>| owed.is_subset(&turns.begun[turns.component_of[index]]);
             has_ended || language.owed_loops(rest).is_some_and(is_satisfied)
         };
         let mut met: Vec<bool> = (0..self.states.len()).map(is_met).collect();
@@ -168,7 +169,7 @@ impl LoopProduct {
         let (mut owed, mut begun) = (BTreeSet::new(), BTreeSet::new());
         while let Some(index) = open.pop() {
             owed.extend(language.owed_loops(self.states[index].1).unwrap_or_default());
-            begun.extend(&turns.begun[turns.of_place[index]]);
+            begun.extend(&turns.begun[turns.component_of[index]]);
             open.extend(self.next[index].iter().map(|(to, _)| *to).filter(|to| seen.insert(*to)));
         }
         owed.difference(&begun).map(|&number| language.endless(number).to_owned()).collect()

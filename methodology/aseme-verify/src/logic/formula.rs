@@ -138,7 +138,7 @@ impl ConditionReader<'_> {
             return or_unknown(whole, wanted, cases);
         }
         let difference = LinearForm::of(left, self).minus(&LinearForm::of(right, self));
-        let comparison = if wanted.is_positive() { comparison } else { comparison.contrary() };
+        let comparison = if wanted.is_positive() { comparison } else { comparison.negated() };
         // two fields compared for equality may have any type
         let is_number = !(is_equality && is_field(left) && is_field(right));
         let bounds = difference.bounds(comparison).into_iter().map(|all| {

@@ -82,7 +82,7 @@ fn negated(condition: &Expression) -> Expression {
         ExpressionKind::Absent(message) => ExpressionKind::Present(message.clone()),
         ExpressionKind::Present(message) => ExpressionKind::Absent(message.clone()),
         ExpressionKind::Compare(left, comparison, right) => {
-            ExpressionKind::Compare(left.clone(), comparison.contrary(), right.clone())
+            ExpressionKind::Compare(left.clone(), comparison.negated(), right.clone())
         }
         _ => ExpressionKind::Not(Box::new(condition.clone())),
     };

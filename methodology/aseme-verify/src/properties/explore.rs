@@ -52,12 +52,12 @@ pub(crate) fn explored(
     };
     let found = explore_labelled(&chart, &mut surroundings, &mut asked, settings.limits());
     let tick = pace.map_or(1, |pace| nanoseconds(pace.tick));
-    let contrary = bound.contrary.clone().in_units(tick);
+    let negation = bound.negation.clone().in_units(tick);
     let states = found.states().len();
     let mut confirm = |run: &Violation| confirmed(abstraction, plan, &found, run, settings);
-    let (is_timed, most) = (pace.is_some(), limit.saturating_mul(4));
+    let (is_timed, max) = (pace.is_some(), limit.saturating_mul(4));
     let text = |violation: &Violation| trace_text(&found, violation, plan, chart.as_ref(), pace);
-    let answer = match product::violation(&found, &contrary, is_timed, has_idle, most, &mut confirm) {
+    let answer = match product::violation(&found, &negation, is_timed, has_idle, max, &mut confirm) {
         SearchOutcome::Violation(violation) => {
             ExplorationVerdict::Violated(text(&violation), !violation.cycle.is_empty())
         }

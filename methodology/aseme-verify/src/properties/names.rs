@@ -21,7 +21,7 @@ pub struct BoundProperty {
     /// The property to evaluate.
     pub plan: Arc<CompiledProperty>,
     /// Its negation: the property of violating runs.
-    pub(crate) contrary: CompiledProperty,
+    pub(crate) negation: CompiledProperty,
 }
 
 /// Resolves the states and events of a property in a chart. Names in conditions are resolved by
@@ -42,9 +42,9 @@ pub fn bind(
         Lowering::new(&property.name, is_lasting, lookup).finish(&property.formula, holds)
     };
     let made = plan(true, &mut found);
-    let contrary = plan(false, &mut Vec::new());
-    match (made, contrary) {
-        (Ok(plan), Ok(contrary)) if found.is_empty() => Ok(BoundProperty { plan: Arc::new(plan), contrary }),
+    let negation = plan(false, &mut Vec::new());
+    match (made, negation) {
+        (Ok(plan), Ok(negation)) if found.is_empty() => Ok(BoundProperty { plan: Arc::new(plan), negation }),
         (Ok(_), Ok(_)) => Err(found),
         (Err(too_large), _) | (_, Err(too_large)) => {
             let message = format!("`{}` has more than {} {}", property.name, too_large.1, too_large.0);

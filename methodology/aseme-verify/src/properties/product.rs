@@ -46,7 +46,7 @@ pub(crate) type Confirmation<'c> = dyn FnMut(&Violation) -> Result<(), Unconfirm
 /// states. Bounds are in ticks. Runs that are not confirmed are passed over.
 pub(crate) fn violation(
     found: &LabelledGraph,
-    contrary: &CompiledProperty,
+    negation: &CompiledProperty,
     is_timed: bool,
     has_idle: bool,
     limit: usize,
@@ -56,7 +56,7 @@ pub(crate) fn violation(
     let (from, begin) = outgoing(found);
     let mut search = ProductSearch {
         found,
-        contrary,
+        negation,
         has_idle,
         from,
         positions: Vec::new(),
@@ -135,7 +135,7 @@ struct ProductPosition {
 
 struct ProductSearch<'a> {
     found: &'a LabelledGraph,
-    contrary: &'a CompiledProperty,
+    negation: &'a CompiledProperty,
     /// Whether idle regions were left out: then the chart is never stable.
     has_idle: bool,
     from: Vec<Vec<usize>>,
@@ -158,7 +158,7 @@ impl<'a> ProductSearch<'a> {
         let mut open = VecDeque::new();
         for step in begin {
             let at = TimedLetter { letter: self.step(step).letter, now: 0 };
-            if stack.begin(self.contrary, at).is_err() {
+            if stack.begin(self.negation, at).is_err() {
                 // the clauses of a step that was not finished imply nothing
                 self.is_whole = false;
                 continue;
@@ -169,7 +169,7 @@ impl<'a> ProductSearch<'a> {
         }
         while let Some(index) = open.pop_front() {
             let ProductPosition { state, clause, .. } = self.positions[index];
-            if self.may_end(state) && !clause.awaits(self.contrary) {
+            if self.may_end(state) && !clause.awaits(self.negation) {
                 let run = Violation { prefix: self.path_to(Some(index)), cycle: Vec::new() };
                 let alternatives = self.alternatives_to(Some(index));
                 if let Some(run) = candidates.confirmed(run, &alternatives) {
@@ -178,7 +178,7 @@ impl<'a> ProductSearch<'a> {
             }
             for step in self.from[state].clone() {
                 let at = TimedLetter { letter: self.step(step).letter, now: self.step(step).elapsed };
-                if stack.step(self.contrary, &[clause], at).is_err() {
+                if stack.step(self.negation, &[clause], at).is_err() {
                     self.is_whole = false;
                     continue;
                 }
@@ -216,7 +216,7 @@ impl<'a> ProductSearch<'a> {
                     None => continue,
                 }
             }
-            let clause = clause.shifted(elapsed, self.contrary);
+            let clause = clause.shifted(elapsed, self.negation);
             let count = self.positions.len();
             let index = match self.numbers.entry((to, clause)) {
                 Entry::Occupied(known) => *known.get(),
@@ -309,8 +309,8 @@ impl CycleSearch<'_> {
     fn stops(&self, inside: &BTreeSet<usize>) -> Option<Vec<CycleStop>> {
         let search = self.search;
         let mut stops = Vec::new();
-        for (obligation, &(term, _)) in search.contrary.obligations.iter().enumerate() {
-            if matches!(search.contrary.terms[term], Subformula::Until { bound: None, .. }) {
+        for (obligation, &(term, _)) in search.negation.obligations.iter().enumerate() {
+            if matches!(search.negation.terms[term], Subformula::Until { bound: None, .. }) {
                 let met = |index: &&usize| !search.positions[**index].clause.has(obligation);
                 stops.push(CycleStop::Place(*inside.iter().find(met)?));
             }

@@ -79,7 +79,7 @@ struct ReplayLog {
     claims: Vec<RunClaim>,
     /// The deliveries in which each message is read.
     read: BTreeMap<String, (Path, BTreeSet<u32>)>,
-    trouble: Option<String>,
+    error: Option<String>,
 }
 
 impl RunClaim {
@@ -134,7 +134,7 @@ impl<'a> ReplayHost<'a> {
     /// Ends a step: the machine must have asked what the run has decided.
     pub(super) fn end(&mut self) -> Result<(), String> {
         let log = self.log.get_mut();
-        match log.trouble.take() {
+        match log.error.take() {
             Some(trouble) => Err(trouble),
             None if log.next != self.decisions.len() => Err("other conditions are read there".into()),
             None => Ok(()),
@@ -189,7 +189,7 @@ impl<'a> ReplayHost<'a> {
     /// All facts, and that messages persist once they have arrived.
     pub(super) fn claims(&self) -> Result<Vec<RunClaim>, String> {
         let log = self.log.borrow();
-        if let Some(trouble) = &log.trouble {
+        if let Some(trouble) = &log.error {
             return Err(trouble.clone());
         }
         let mut claims = Vec::new();
@@ -300,7 +300,7 @@ impl<'a> ReplayHost<'a> {
 
     fn trouble(&self, text: String) {
         if let Ok(mut log) = self.log.try_borrow_mut() {
-            log.trouble.get_or_insert(text);
+            log.error.get_or_insert(text);
         }
     }
 
@@ -318,7 +318,7 @@ impl<'a> ReplayHost<'a> {
         let value = match self.decisions.get(log.next) {
             Some(&(planned, value)) if planned == script => value,
             _ => {
-                log.trouble.get_or_insert_with(|| "other conditions are read there".into());
+                log.error.get_or_insert_with(|| "other conditions are read there".into());
                 false
             }
         };

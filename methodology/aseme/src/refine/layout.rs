@@ -28,8 +28,8 @@ fn states(chart: &mut Statechart, entries: &[LayoutEntry]) -> Vec<UnmatchedEntry
             LayoutTarget::Transition { .. } => None,
         })
         .collect();
-    let (wishes, frames): (Vec<_>, Vec<_>) = of_states.into_iter().unzip();
-    let (chosen, unmatched) = assign_entries(&wishes, |id| lookup.node_text(*id));
+    let (targets, frames): (Vec<_>, Vec<_>) = of_states.into_iter().unzip();
+    let (chosen, unmatched) = assign_entries(&targets, |id| lookup.node_text(*id));
     for (id, index) in chosen {
         chart.layout.frames.insert(id, frames[index]);
     }
@@ -65,8 +65,8 @@ fn transitions(chart: &mut Statechart, entries: &[LayoutEntry]) -> Vec<Unmatched
             LayoutTarget::State(_) => None,
         })
         .collect();
-    let (wishes, entries): (Vec<_>, Vec<_>) = of_transitions.into_iter().unzip();
-    let (chosen, unmatched) = assign_entries(&wishes, |id| lookup.transition_text(*id));
+    let (targets, entries): (Vec<_>, Vec<_>) = of_transitions.into_iter().unzip();
+    let (chosen, unmatched) = assign_entries(&targets, |id| lookup.transition_text(*id));
     for (id, index) in chosen {
         chart.layout.bends.insert(id, entries[index].bends.clone());
     }

@@ -104,7 +104,7 @@ impl Search<'_> {
             let values = values(searched, point);
             let trials = (0..VALIDATION).map(|trial| self.cost(&values, u64::MAX - trial as u64));
             let cost = trials.sum::<Result<f64, _>>()? / VALIDATION as f64;
-            if found.as_ref().is_none_or(|(least, _)| cost < *least) {
+            if found.as_ref().is_none_or(|(min, _)| cost < *min) {
                 found = Some((cost, values));
             }
         }

@@ -46,7 +46,7 @@ impl AgentReader<'_> {
         let agent = agent.chart_settings(own);
         let monitors: Vec<&Element> = element.children_named("monitor").collect();
         monitors.into_iter().fold(agent, |agent, monitor| {
-            let own = agent.own.last().cloned().unwrap_or_default();
+            let own = agent.chart_settings.last().cloned().unwrap_or_default();
             let own = self.monitor_of_chart(monitor, own, &agent);
             agent.chart_settings(own)
         })

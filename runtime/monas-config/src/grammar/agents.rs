@@ -153,7 +153,7 @@ fn body() -> ElementRule {
                 Kind::File,
                 "the colour table with which the calibration of images begins; `monas vision --calibrate` makes one",
             ),
-            attribute("delay", Kind::Duration { least: Duration::ZERO }, "delay of commands, for trials")
+            attribute("delay", Kind::Duration { min: Duration::ZERO }, "delay of commands, for trials")
                 .or("0s"),
             attribute(
                 "noise",
@@ -251,7 +251,7 @@ fn module() -> ElementRule {
 }
 
 fn link() -> ElementRule {
-    let beat = Kind::Duration { least: Duration::from_millis(1) };
+    let beat = Kind::Duration { min: Duration::from_millis(1) };
     let transports = Kind::Word(vec!["local", "zenoh"]);
     ElementRule::new("link", "a connection to other processes and hosts")
         .attributes([
@@ -318,11 +318,7 @@ fn budget() -> ElementRule {
             "number of robots that share the budget of a profile",
         ))
         .attribute(attribute("packets", Kind::whole_from(1), "how many packets"))
-        .attribute(attribute(
-            "window",
-            Kind::Duration { least: Duration::ZERO },
-            "the duration of the window",
-        ))
+        .attribute(attribute("window", Kind::Duration { min: Duration::ZERO }, "the duration of the window"))
         .attribute(attribute("payload", Kind::whole_from(1), "bytes per packet"))
 }
 

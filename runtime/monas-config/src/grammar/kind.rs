@@ -14,21 +14,21 @@ pub enum Kind {
     /// An integer within these limits.
     Whole {
         /// The minimum.
-        least: i64,
+        min: i64,
         /// The maximum.
-        most: i64,
+        max: i64,
     },
     /// A finite number within these limits.
     Number {
         /// The minimum.
-        least: f64,
+        min: f64,
         /// The maximum.
-        most: f64,
+        max: f64,
     },
     /// A duration with its unit: `300s`, `100ms` or `10min`.
     Duration {
         /// The minimum.
-        least: Duration,
+        min: Duration,
     },
     /// One of these words.
     Word(Vec<&'static str>),
@@ -45,27 +45,27 @@ pub enum Kind {
 impl Kind {
     /// Any integer.
     pub const fn whole() -> Kind {
-        Kind::Whole { least: i32::MIN as i64, most: i32::MAX as i64 }
+        Kind::Whole { min: i32::MIN as i64, max: i32::MAX as i64 }
     }
 
     /// An integer with a minimum.
-    pub const fn whole_from(least: i64) -> Kind {
-        Kind::Whole { least, most: u32::MAX as i64 }
+    pub const fn whole_from(min: i64) -> Kind {
+        Kind::Whole { min, max: u32::MAX as i64 }
     }
 
     /// An integer in a range.
-    pub const fn whole_in(least: i64, most: i64) -> Kind {
-        Kind::Whole { least, most }
+    pub const fn whole_in(min: i64, max: i64) -> Kind {
+        Kind::Whole { min, max }
     }
 
     /// A number with a minimum.
-    pub const fn number_from(least: f64) -> Kind {
-        Kind::Number { least, most: f64::MAX }
+    pub const fn number_from(min: f64) -> Kind {
+        Kind::Number { min, max: f64::MAX }
     }
 
     /// A number in a range.
-    pub const fn number_in(least: f64, most: f64) -> Kind {
-        Kind::Number { least, most }
+    pub const fn number_in(min: f64, max: f64) -> Kind {
+        Kind::Number { min, max }
     }
 
     /// Whether a text is a value of this kind.
@@ -73,13 +73,13 @@ impl Kind {
         let text = text.trim();
         match self {
             Kind::Flag => flag(text).is_some(),
-            Kind::Whole { least, most } => {
-                i64::from_str(text).is_ok_and(|number| (*least..=*most).contains(&number))
+            Kind::Whole { min, max } => {
+                i64::from_str(text).is_ok_and(|number| (*min..=*max).contains(&number))
             }
-            Kind::Number { least, most } => {
-                f64::from_str(text).is_ok_and(|number| (*least..=*most).contains(&number))
+            Kind::Number { min, max } => {
+                f64::from_str(text).is_ok_and(|number| (*min..=*max).contains(&number))
             }
-            Kind::Duration { least } => crate::duration(text).is_some_and(|length| length >= *least),
+            Kind::Duration { min } => crate::duration(text).is_some_and(|length| length >= *min),
             Kind::Word(words) => words.contains(&text),
             Kind::Name => {
                 !text.is_empty() && text.chars().all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '-')
@@ -93,21 +93,19 @@ impl Kind {
     pub fn expected(&self) -> String {
         match self {
             Kind::Flag => format!("one of {}", listed(&FLAGS.map(|(word, _)| word))),
-            Kind::Whole { least, most } => match (*least, *most) {
-                (least, most) if least <= i32::MIN.into() && most >= i32::MAX.into() => {
-                    "a whole number".into()
-                }
-                (least, most) if most >= u32::MAX.into() => format!("a whole number from {least}"),
-                (least, most) if least <= i32::MIN.into() => format!("a whole number of at most {most}"),
-                (least, most) => format!("a whole number from {least} to {most}"),
+            Kind::Whole { min, max } => match (*min, *max) {
+                (min, max) if min <= i32::MIN.into() && max >= i32::MAX.into() => "a whole number".into(),
+                (min, max) if max >= u32::MAX.into() => format!("a whole number from {min}"),
+                (min, max) if min <= i32::MIN.into() => format!("a whole number of at most {max}"),
+                (min, max) => format!("a whole number from {min} to {max}"),
             },
-            Kind::Number { least: f64::MIN, most: f64::MAX } => "a number".into(),
-            Kind::Number { least, most: f64::MAX } => format!("a number of at least {least}"),
-            Kind::Number { least, most } => format!("a number from {least} to {most}"),
-            Kind::Duration { least: Duration::ZERO } => "a time such as `300s` or `100ms`".into(),
-            Kind::Duration { least } => {
-                let example = Duration::from_millis(200).max(*least * 2);
-                format!("a time of at least `{least:?}`, such as `{example:?}`")
+            Kind::Number { min: f64::MIN, max: f64::MAX } => "a number".into(),
+            Kind::Number { min, max: f64::MAX } => format!("a number of at least {min}"),
+            Kind::Number { min, max } => format!("a number from {min} to {max}"),
+            Kind::Duration { min: Duration::ZERO } => "a time such as `300s` or `100ms`".into(),
+            Kind::Duration { min } => {
+                let example = Duration::from_millis(200).max(*min * 2);
+                format!("a time of at least `{min:?}`, such as `{example:?}`")
             }
             Kind::Word(words) => format!("one of {}", listed(words)),
             Kind::Name => "a name of letters, digits, `_` and `-`".into(),
@@ -138,7 +136,7 @@ mod tests {
 
     #[test]
     fn values_are_allowed_or_not() {
-        let tick = Kind::Duration { least: Duration::from_millis(1) };
+        let tick = Kind::Duration { min: Duration::from_millis(1) };
         for (kind, right, wrong) in [
             (Kind::Flag, &["1", "0", "true", "false", " 1 "][..], &["yes", "2", ""][..]),
             (Kind::whole_in(1, 7), &["1", "7"], &["0", "8", "1.5", "one", ""]),

@@ -74,10 +74,10 @@ fn attribute(rule: &AttributeRule) -> JsonNode {
 /// The schema of a value, as its type or as a text.
 fn value(kind: &Kind) -> Vec<(String, JsonNode)> {
     let typed = |name: &str| ("type".to_owned(), JsonNode::text(name));
-    let limits = |least: f64, most: f64| {
-        let least = ("minimum".to_owned(), JsonNode::Number(least));
-        let most = (most < f64::MAX).then(|| ("maximum".to_owned(), JsonNode::Number(most)));
-        std::iter::once(least).chain(most)
+    let limits = |min: f64, max: f64| {
+        let min = ("minimum".to_owned(), JsonNode::Number(min));
+        let max = (max < f64::MAX).then(|| ("maximum".to_owned(), JsonNode::Number(max)));
+        std::iter::once(min).chain(max)
     };
     let words = |words: &[&str]| JsonNode::Array(words.iter().map(|word| JsonNode::text(word)).collect());
     match kind {
@@ -94,12 +94,10 @@ fn value(kind: &Kind) -> Vec<(String, JsonNode)> {
                 JsonNode::text("false"),
             ]),
         )],
-        Kind::Whole { least, most } => {
-            std::iter::once(typed("integer")).chain(limits(*least as f64, *most as f64)).collect()
+        Kind::Whole { min, max } => {
+            std::iter::once(typed("integer")).chain(limits(*min as f64, *max as f64)).collect()
         }
-        Kind::Number { least, most } => {
-            std::iter::once(typed("number")).chain(limits(*least, *most)).collect()
-        }
+        Kind::Number { min, max } => std::iter::once(typed("number")).chain(limits(*min, *max)).collect(),
         Kind::Duration { .. } => {
             vec![typed("string"), ("pattern".into(), JsonNode::text(&format!("^{DURATION}$")))]
         }

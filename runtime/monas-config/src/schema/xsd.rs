@@ -106,14 +106,14 @@ fn facets(out: &mut String, depth: usize, kind: &Kind) {
     match kind {
         Kind::Flag => ["1", "0", "true", "false"].iter().for_each(|word| facet("enumeration", word)),
         Kind::Word(words) => words.iter().for_each(|word| facet("enumeration", word)),
-        Kind::Whole { least, most } => {
-            facet("minInclusive", &least.to_string());
-            facet("maxInclusive", &most.to_string());
+        Kind::Whole { min, max } => {
+            facet("minInclusive", &min.to_string());
+            facet("maxInclusive", &max.to_string());
         }
-        Kind::Number { least, most } => {
-            facet("minInclusive", &least.to_string());
-            if *most < f64::MAX {
-                facet("maxInclusive", &most.to_string());
+        Kind::Number { min, max } => {
+            facet("minInclusive", &min.to_string());
+            if *max < f64::MAX {
+                facet("maxInclusive", &max.to_string());
             }
         }
         Kind::Duration { .. } => facet("pattern", super::json::DURATION),

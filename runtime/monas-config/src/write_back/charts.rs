@@ -13,11 +13,11 @@ impl AgentWriteBack<'_> {
             let span = element.text_span();
             splices.push((span.start..span.end, element_text(&now.model)));
         }
-        let changed = self.changed(element, attributes(&now.own).into_iter());
+        let changed = self.changed(element, attributes(&now.settings).into_iter());
         splices.extend(self.document.attribute_splices(element, &changed));
         let mut behind = element.text_span().end;
         let mut coming = String::new();
-        for said in &now.own.activities {
+        for said in &now.settings.activities {
             match element.children_named("activity").find(|known| known.text() == said.name) {
                 Some(known) => {
                     let changed = self.changed_parameters(known, said);
@@ -52,15 +52,16 @@ fn attributes(own: &ChartSettings) -> Vec<(&'static str, String)> {
 
 /// A statechart as new text on one line, with the activities executed elsewhere.
 pub(crate) fn chart(chart: &ChartProfile, elsewhere: &[String]) -> String {
-    let mut said = attributes(&chart.own);
-    let elsewhere: Vec<&str> = elsewhere.iter().chain(&chart.own.elsewhere).map(String::as_str).collect();
+    let mut said = attributes(&chart.settings);
+    let elsewhere: Vec<&str> =
+        elsewhere.iter().chain(&chart.settings.elsewhere).map(String::as_str).collect();
     if !elsewhere.is_empty() {
         said.push(("elsewhere", elsewhere.join(" ")));
     }
     let said: String =
         said.iter().map(|(key, value)| format!(" {key}=\"{}\"", attribute_text(value))).collect();
-    let within: String = chart.own.activities.iter().map(activity).collect();
-    let monitors = monitors(&chart.own.property_sets, "");
+    let within: String = chart.settings.activities.iter().map(activity).collect();
+    let monitors = monitors(&chart.settings.property_sets, "");
     format!("<statechart{said}>{}{within}{monitors}</statechart>", element_text(&chart.model))
 }
 

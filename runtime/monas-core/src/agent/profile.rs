@@ -72,13 +72,13 @@ pub struct ChartProfile {
     /// Whether it is a generated chart.
     pub is_generated: bool,
     /// Its settings.
-    pub own: ChartSettings,
+    pub settings: ChartSettings,
 }
 
 impl AgentProfile {
     /// Describes an agent.
     pub fn of(agent: &Agent) -> AgentProfile {
-        let charts = agent.models.iter().zip(&agent.charts).zip(&agent.own).enumerate();
+        let charts = agent.models.iter().zip(&agent.charts).zip(&agent.chart_settings).enumerate();
         AgentProfile {
             name: agent.name.clone(),
             frequency: agent.frequency,
@@ -98,7 +98,7 @@ impl AgentProfile {
                     statechart: statechart.clone(),
                     compiled: agent.compiled[index].clone(),
                     is_generated: agent.generated.contains_key(&index),
-                    own: own.clone(),
+                    settings: own.clone(),
                 })
                 .collect(),
         }

@@ -25,7 +25,7 @@ pub struct AgentDefaults {
 impl ChartRunner {
     /// The chart's own settings.
     pub fn own(&self) -> &ChartSettings {
-        &self.own
+        &self.settings
     }
 
     /// Replaces the settings of the agent without changing the next periodic step.
@@ -47,12 +47,12 @@ impl ChartRunner {
     pub fn apply_settings(&mut self, own: ChartSettings, now: Timestamp) {
         let before = self.frequency();
         for known in &own.activities {
-            let parameters = self.own.parameters(&known.name);
+            let parameters = self.settings.parameters(&known.name);
             if !known.parameters.has_same_values(&parameters) {
                 self.host.slots.configure(&known.name, &known.parameters);
             }
         }
-        self.own = own;
+        self.settings = own;
         if self.frequency() != before {
             self.skip_ticks(now);
         }
@@ -60,7 +60,7 @@ impl ChartRunner {
 
     /// The frequency of its periodic steps.
     fn frequency(&self) -> Option<Frequency> {
-        self.own.frequency.or(self.defaults.frequency)
+        self.settings.frequency.or(self.defaults.frequency)
     }
 
     /// The time of the next periodic step.
@@ -90,23 +90,23 @@ impl ChartRunner {
 
     /// The scheduling of its thread.
     pub fn scheduling(&self) -> Scheduling {
-        self.own.scheduling(&self.defaults.scheduling)
+        self.settings.scheduling(&self.defaults.scheduling)
     }
 
     /// Number of steps after which its times are logged.
     pub fn statistics_every(&self) -> Option<u64> {
-        self.own.statistics_every.unwrap_or(self.defaults.statistics_every)
+        self.settings.statistics_every.unwrap_or(self.defaults.statistics_every)
     }
 
     /// The policy for failures of the chart and of activities without a policy.
     pub(crate) fn policy(&self) -> FailurePolicy {
-        self.own.policy.unwrap_or(self.defaults.policy)
+        self.settings.policy.unwrap_or(self.defaults.policy)
     }
 
     /// The policy for failures of a state's activity.
     pub(crate) fn policy_of(&self, activation: Activation) -> FailurePolicy {
         let name = self.host.slots.name(activation);
-        let policy = self.own.of_activity(name).and_then(|known| known.policy);
+        let policy = self.settings.of_activity(name).and_then(|known| known.policy);
         policy.unwrap_or_else(|| self.policy())
     }
 

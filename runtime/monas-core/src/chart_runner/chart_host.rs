@@ -255,7 +255,7 @@ impl EvalContext for RootScope<'_> {
 /// Fills in the record of a micro-step, reusing the memory of the message.
 fn write_record(message: &mut records::Chart, number: u32, chart: &CompiledChart, record: &TraceRecord<'_>) {
     (message.chart, message.time) = (number, record.time.as_nanos());
-    message.event = match record.occasion {
+    message.event = match record.cause {
         MicroStepCause::Event(event) => event.0 + 1,
         _ => 0,
     };

@@ -107,11 +107,11 @@ impl<'a> ScenarioRun<'a> {
     pub(crate) fn new(
         chart: &Arc<CompiledChart>,
         functions: &'a Arc<[FunctionDeclaration]>,
-        tells: bool,
+        reports: bool,
     ) -> Result<ScenarioRun<'a>, Error> {
         let hub = Hub::with_linked_topics("scenario").map_err(Error::hub)?;
         let lines = Arc::new(Mutex::new(Vec::new()));
-        let listeners = if tells { recording_listener(&lines) } else { ListenerSet::default() };
+        let listeners = if reports { recording_listener(&lines) } else { ListenerSet::default() };
         let home = ChartContext {
             hub: &hub,
             agent: "chart",

@@ -421,14 +421,15 @@ impl PlanContext<'_> {
         };
         let statechart = bound.chart.statechart().clone();
         let names = self.names();
-        let own = profile.charts[index].own.clone();
+        let own = profile.charts[index].settings.clone();
         let bound = factory.fitting(bound, &own, &self.chart_site(&profile, &names)).map_err(failed)?;
         let (model, is_generated) = (file.clone(), text.is_empty());
         let compiled = (!is_generated).then(|| binder.model(&bound));
-        profile.charts[index] = ChartProfile { model, statechart, compiled, is_generated, own };
+        profile.charts[index] = ChartProfile { model, statechart, compiled, is_generated, settings: own };
         let states = states.iter().map(|state| (state.key.clone(), state.value.clone())).collect();
         let of_agent = Some((&profile.property_sets[..], profile.name.as_str(), profile.charts.len()));
-        let monitors = binder.monitors(of_agent, &profile.charts[index].own.property_sets, &bound.chart)?;
+        let monitors =
+            binder.monitors(of_agent, &profile.charts[index].settings.property_sets, &bound.chart)?;
         let swap = Box::new(ModelSwap {
             bound,
             states,

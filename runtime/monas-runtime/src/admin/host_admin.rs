@@ -243,8 +243,8 @@ impl HostAdmin {
                     self.profiles.insert(index, profile);
                 }
             }
-            PlanStep::UpdateModules(equipment) => {
-                said.extend(self.update_modules(*equipment, asked.as_ref(), control)?);
+            PlanStep::UpdateModules(module_update) => {
+                said.extend(self.update_modules(*module_update, asked.as_ref(), control)?);
             }
             PlanStep::Remove(name) => {
                 control.remove(&name).map_err(|reason| refusal("E0357", reason))?;
@@ -259,11 +259,11 @@ impl HostAdmin {
     /// agent continues unchanged.
     fn update_modules(
         &mut self,
-        equipment: ModuleUpdate,
+        module_update: ModuleUpdate,
         asked: Option<&ChangeRef>,
         control: &mut dyn AgentControl,
     ) -> Result<Vec<Finding>, ChangeRefusal> {
-        let ModuleUpdate { registry, updates } = equipment;
+        let ModuleUpdate { registry, updates } = module_update;
         let mut said = Vec::new();
         let mut is_begun = false;
         for (profile, update) in updates {

@@ -144,7 +144,10 @@ fn instance_update(
     let mut instances: Vec<(usize, ActivityInstances)> = Vec::new();
     for (position, chart) in profile.charts.iter().enumerate() {
         let states = states(chart, profile, module).into_iter().map(|(node, name)| {
-            Ok::<_, ChangeRefusal>((node, settings::instance(registry, &name, &chart.own.parameters(&name))?))
+            Ok::<_, ChangeRefusal>((
+                node,
+                settings::instance(registry, &name, &chart.settings.parameters(&name))?,
+            ))
         });
         let states = states.collect::<Result<ActivityInstances, _>>()?;
         if !states.is_empty() {
@@ -174,7 +177,7 @@ fn states(chart: &ChartProfile, profile: &AgentProfile, module: &Module) -> Vec<
         return Vec::new();
     }
     let named = chart.statechart.nodes().filter_map(|(id, node)| Some((id, node.activity.as_deref()?)));
-    let elsewhere = || profile.elsewhere.iter().chain(&chart.own.elsewhere);
+    let elsewhere = || profile.elsewhere.iter().chain(&chart.settings.elsewhere);
     let own =
         named.filter(|(_, name)| is_activity_of(module, name) && !elsewhere().any(|other| other == name));
     own.map(|(id, name)| (id, name.to_owned())).collect()

@@ -140,7 +140,7 @@ fn set_chart(
     registry: &Registry,
 ) -> Result<AgentUpdate, ChangeRefusal> {
     let chart = &profile.charts[index];
-    let mut own = chart.own.clone();
+    let mut own = chart.settings.clone();
     let mut configured: Vec<&str> = Vec::new();
     for Setting { key, value } in settings {
         match key.split_once('.') {
@@ -163,7 +163,7 @@ fn set_chart(
         // values.
         charts_instance(chart, registry, name, &own.parameters(name))?;
     }
-    profile.charts[index].own = own.clone();
+    profile.charts[index].settings = own.clone();
     Ok(AgentUpdate { chart_settings: Some((index, Box::new(own))), ..AgentUpdate::default() })
 }
 

@@ -205,11 +205,11 @@ impl RealTimeReplay {
                     let own = OwnMessage { position, topic, line, bytes };
                     part.published(own, is_cycle, &mut self.report, on_difference)?;
                 }
-                RealTimeRoute::Other(inlet) => {
+                RealTimeRoute::Other(endpoint) => {
                     let bytes = shared.get_or_insert_with(|| message.bytes.into()).clone();
                     part.recorded_inputs.add(ExternalMessage {
                         position,
-                        endpoint: inlet,
+                        endpoint,
                         arrival: arrival(&message),
                         bytes,
                     });
@@ -312,8 +312,10 @@ impl ThreadReplay {
         let agent = profile.name.clone();
         let outputs = OwnOutputTap::new(&agent, thread.part());
         config.observers.push(Box::new(outputs.clone()));
-        let PreparedRun { mut stations, factory, .. } = PreparedRun::new(config, REAL_TIME_SEED)?;
-        let Some(PreparedHost { hub, agents: mut members, links, context: ground, .. }) = stations.pop()
+        let PreparedRun { hosts: mut prepared_hosts, factory, .. } =
+            PreparedRun::new(config, REAL_TIME_SEED)?;
+        let Some(PreparedHost { hub, agents: mut members, links, context: ground, .. }) =
+            prepared_hosts.pop()
         else {
             return Err(nothing_to_run(&agent));
         };
@@ -366,14 +368,14 @@ impl ThreadReplay {
         if slot.is_none() || (topic == HOST.path() && publisher == "monas") {
             return Ok(None);
         }
-        let inlet = match received_by {
+        let endpoint = match received_by {
             Some(_) => self.hub.receiver(host, publisher, topic).map(InputEndpoint::Received),
             None => {
-                let inlet = self.hub.publisher_by_name(topic, publisher);
-                inlet.map(|inlet| InputEndpoint::Published(inlet.of_part(part)))
+                let endpoint = self.hub.publisher_by_name(topic, publisher);
+                endpoint.map(|endpoint| InputEndpoint::Published(endpoint.of_part(part)))
             }
         };
-        Ok(Some(RealTimeRoute::Other(self.recorded_inputs.add_endpoint(inlet.map_err(Error::hub)?))))
+        Ok(Some(RealTimeRoute::Other(self.recorded_inputs.add_endpoint(endpoint.map_err(Error::hub)?))))
     }
 
     /// Processes a recorded message of the agent.

@@ -163,10 +163,10 @@ impl RecordedChanges {
         let is_list = matches!(repeated, ReplayedThread::List(_));
         // The reply waits up to a second for a busy thread: a chart may finish its present turn
         // first.
-        let patience = if is_list { 0 } else { 1 };
+        let turns_left = if is_list { 0 } else { 1 };
         if !self.was_applied && self.pending_error.is_none() {
             self.pending_error =
-                refuse_in_real_time(changed, is_list, at).err().map(|error| (error, patience));
+                refuse_in_real_time(changed, is_list, at).err().map(|error| (error, turns_left));
         }
         Ok(())
     }
@@ -201,7 +201,7 @@ impl RecordedChanges {
         match self.pending_error.take() {
             Some((error, 0)) => Err(error),
             untold => {
-                self.pending_error = untold.map(|(error, patience)| (error, patience - 1));
+                self.pending_error = untold.map(|(error, turns_left)| (error, turns_left - 1));
                 Ok(())
             }
         }

@@ -28,7 +28,7 @@ pub(crate) struct OwnOutputTap {
 struct TapState {
     produced: Vec<ThreadOutput>,
     /// Whether present publications come from the recording.
-    is_muted: bool,
+    ignores_publications: bool,
 }
 
 impl OwnOutputTap {
@@ -50,7 +50,7 @@ impl Observer for OwnOutputTap {
     fn observe(&mut self, publication: Publication<'_>) {
         let mut heard = self.heard();
         let Header { topic, part, .. } = publication.sample.header;
-        if publication.publisher == self.agent && part == self.part && !heard.is_muted {
+        if publication.publisher == self.agent && part == self.part && !heard.ignores_publications {
             heard.produced.push(ThreadOutput { topic, bytes: publication.bytes().to_vec() });
         }
     }
@@ -107,9 +107,9 @@ impl RecordedInputs {
     }
 
     /// Adds an endpoint and returns its index.
-    pub(crate) fn add_endpoint(&self, inlet: InputEndpoint) -> usize {
+    pub(crate) fn add_endpoint(&self, endpoint: InputEndpoint) -> usize {
         let mut state = self.state();
-        state.endpoints.push(inlet);
+        state.endpoints.push(endpoint);
         state.endpoints.len() - 1
     }
 
@@ -151,9 +151,9 @@ impl RecordedInputs {
 impl RecordedInputState {
     /// Delivers the messages up to a position.
     fn deliver_until(&mut self, until: u64) {
-        self.own_outputs.heard().is_muted = true;
+        self.own_outputs.heard().ignores_publications = true;
         self.publish_waiting(until);
-        self.own_outputs.heard().is_muted = false;
+        self.own_outputs.heard().ignores_publications = false;
     }
 
     fn publish_waiting(&mut self, until: u64) {

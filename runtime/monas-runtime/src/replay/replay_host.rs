@@ -32,13 +32,13 @@ pub(crate) struct OutputCapture(Arc<Mutex<CaptureState>>);
 #[derive(Default)]
 struct CaptureState {
     /// Whether present publications come from the recording and are ignored.
-    is_mute: bool,
+    ignores_publications: bool,
     produced: Vec<AgentOutput>,
 }
 
 impl OutputCapture {
     pub(crate) fn mute(&self, is_mute: bool) {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner).is_mute = is_mute;
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).ignores_publications = is_mute;
     }
 
     pub(crate) fn take(&self) -> Vec<AgentOutput> {
@@ -57,7 +57,7 @@ impl OutputCapture {
 impl Observer for OutputCapture {
     fn observe(&mut self, publication: Publication<'_>) {
         let mut seen = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        if !seen.is_mute {
+        if !seen.ignores_publications {
             seen.produced.push(AgentOutput {
                 host: publication.host.to_owned(),
                 publisher: publication.publisher.to_owned(),
@@ -101,11 +101,11 @@ pub(crate) struct ReplayedAgent {
 
 impl ReplayHost {
     pub(crate) fn new(
-        station: PreparedHost,
+        host: PreparedHost,
         factory: &Arc<AgentFactory>,
         publishers: &[RecordedPublisher],
     ) -> Result<ReplayHost, Error> {
-        let PreparedHost { hub, agents: members, context: ground, profiles, configuration, .. } = station;
+        let PreparedHost { hub, agents: members, context: ground, profiles, configuration, .. } = host;
         let moved = PublishedTopics::default();
         hub.set_waker(Arc::new(moved.topic_callback()));
         let others = publishers.iter().filter(|one| one.is_agent && one.host == hub.host());

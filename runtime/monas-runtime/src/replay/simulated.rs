@@ -57,8 +57,9 @@ impl SimulatedReplay {
         let capture = OutputCapture::default();
         config.observers.push(Box::new(capture.clone()));
         config.publishers = publishers.to_vec();
-        let PreparedRun { stations, factory, .. } = PreparedRun::new(config, seed)?;
-        let hosts = stations.into_iter().map(|station| ReplayHost::new(station, &factory, publishers));
+        let PreparedRun { hosts: prepared_hosts, factory, .. } = PreparedRun::new(config, seed)?;
+        let hosts =
+            prepared_hosts.into_iter().map(|prepared| ReplayHost::new(prepared, &factory, publishers));
         let mut hosts = hosts.collect::<Result<Vec<ReplayHost>, Error>>()?;
         for produced in capture.take() {
             let host = hosts.iter_mut().find(|host| host.hub.host() == produced.host);

@@ -45,13 +45,13 @@ struct BodyAndAgents {
 
 impl SimulatedHost {
     pub(crate) fn new(
-        station: PreparedHost,
+        prepared: PreparedHost,
         factory: &Arc<AgentFactory>,
         shown: &Arc<SimulatedClock>,
         running: &mut Vec<RunningLink>,
     ) -> Result<SimulatedHost, Error> {
         let PreparedHost { hub, body, agents: members, links, context: ground, profiles, configuration } =
-            station;
+            prepared;
         let moved = PublishedTopics::default();
         let (note, asked) = (moved.topic_callback(), Arc::new(AtomicBool::new(false)));
         let (change, ring) = (hub.topic(CHANGE.path()), asked.clone());

@@ -83,11 +83,11 @@ mod tests {
     }
 
     /// The spin times in waits of these lengths.
-    fn looked_out(habit: &AdaptiveSpin, waits: &[u64]) -> Vec<u64> {
+    fn looked_out(spin: &AdaptiveSpin, waits: &[u64]) -> Vec<u64> {
         let look_out = |&took: &u64| {
-            let wait = habit.spin_then_park::<ByHand>(u64::MAX, || false);
+            let wait = spin.spin_then_park::<ByHand>(u64::MAX, || false);
             NOW.set(NOW.get() + took);
-            habit.waited::<ByHand>(&wait);
+            spin.waited::<ByHand>(&wait);
             LOOKED_OUT.get()
         };
         waits.iter().map(look_out).collect()
@@ -95,16 +95,16 @@ mod tests {
 
     #[test]
     fn short_waits_spin_and_long_waits_sleep() {
-        let habit = AdaptiveSpin::new();
-        assert_eq!(looked_out(&habit, &[1_000, 1_000]), [SHORT_SPIN, WAKE_UP_TIME]);
+        let spin = AdaptiveSpin::new();
+        assert_eq!(looked_out(&spin, &[1_000, 1_000]), [SHORT_SPIN, WAKE_UP_TIME]);
         let hour = 3_600_000_000_000;
         let waits = [hour, 1_000, 1_000, 1_000, hour, hour];
         assert_eq!(
-            looked_out(&habit, &waits),
+            looked_out(&spin, &waits),
             [WAKE_UP_TIME, SHORT_SPIN, SHORT_SPIN, WAKE_UP_TIME, WAKE_UP_TIME, SHORT_SPIN]
         );
         // After a few short waits the long ones no longer matter.
-        let last = looked_out(&habit, &[1_000; 6]).pop();
+        let last = looked_out(&spin, &[1_000; 6]).pop();
         assert_eq!(last, Some(WAKE_UP_TIME));
     }
 

@@ -17,7 +17,7 @@ pub(crate) struct Mailbox<R: Send + 'static, P: Primitives = Threads> {
     state: P::Monitor<MailboxState<R>>,
     /// Whether it has content, for a spinning owner.
     filled: P::Flag,
-    habit: AdaptiveSpin,
+    spin: AdaptiveSpin,
     /// By topic: whether its messages wake the owner.
     of_interest: Box<[P::Flag]>,
 }
@@ -25,7 +25,7 @@ pub(crate) struct Mailbox<R: Send + 'static, P: Primitives = Threads> {
 struct MailboxState<R> {
     wakeups: Wakeups<R>,
     /// Whether the owner sleeps.
-    asleep: bool,
+    is_asleep: bool,
 }
 
 /// The content of a mailbox.
@@ -34,18 +34,18 @@ pub(crate) struct Wakeups<R> {
     pub(crate) returned: VecDeque<R>,
     pub(crate) stop: bool,
     /// Whether the owner was woken to check its commands.
-    pub(crate) nudge: bool,
+    pub(crate) check_commands: bool,
 }
 
 impl<R> Default for Wakeups<R> {
     fn default() -> Wakeups<R> {
-        Wakeups { messages: Vec::new(), returned: VecDeque::new(), stop: false, nudge: false }
+        Wakeups { messages: Vec::new(), returned: VecDeque::new(), stop: false, check_commands: false }
     }
 }
 
 impl<R> Wakeups<R> {
     fn is_empty(&self) -> bool {
-        self.messages.is_empty() && self.returned.is_empty() && !self.stop && !self.nudge
+        self.messages.is_empty() && self.returned.is_empty() && !self.stop && !self.check_commands
     }
 }
 
@@ -53,11 +53,11 @@ impl<R: Send + 'static, P: Primitives> Mailbox<R, P> {
     /// A mailbox for a hub with the given number of topics.
     pub(crate) fn new(topics: usize) -> Mailbox<R, P> {
         let of_interest = std::iter::repeat_with(P::Flag::new).take(topics).collect();
-        let state = MailboxState { wakeups: Wakeups::default(), asleep: false };
+        let state = MailboxState { wakeups: Wakeups::default(), is_asleep: false };
         Mailbox {
             state: P::Monitor::new(state),
             filled: P::Flag::new(),
-            habit: AdaptiveSpin::new(),
+            spin: AdaptiveSpin::new(),
             of_interest,
         }
     }
@@ -89,14 +89,14 @@ impl<R: Send + 'static, P: Primitives> Mailbox<R, P> {
 
     /// Wakes the owner to check its commands.
     pub(crate) fn wake(&self) {
-        self.put(|mail| mail.nudge = true);
+        self.put(|mail| mail.check_commands = true);
     }
 
     fn put(&self, put: impl FnOnce(&mut Wakeups<R>)) {
         let mut state = self.state.lock();
         put(&mut state.wakeups);
         self.filled.set(true);
-        let wakes = state.asleep;
+        let wakes = state.is_asleep;
         drop(state);
         if wakes {
             self.state.wake_one();
@@ -104,28 +104,28 @@ impl<R: Send + 'static, P: Primitives> Mailbox<R, P> {
     }
 
     /// Swaps the content for `into`, whose lists are empty, when there is some, or when no wait
-    /// remains. `patience` returns the maximum wait from now on.
-    pub(crate) fn wait(&self, mut patience: impl FnMut() -> Option<Duration>, into: &mut Wakeups<R>) {
-        (into.stop, into.nudge) = (false, false);
+    /// remains. `timeout` returns the maximum wait from now on.
+    pub(crate) fn wait(&self, mut timeout: impl FnMut() -> Option<Duration>, into: &mut Wakeups<R>) {
+        (into.stop, into.check_commands) = (false, false);
         let mut wait = None;
         if !self.filled.is_set()
-            && let Some(limit) = patience()
+            && let Some(limit) = timeout()
         {
             let limit = u64::try_from(limit.as_nanos()).unwrap_or(u64::MAX);
-            wait = Some(self.habit.spin_then_park::<P>(limit, || self.filled.is_set()));
+            wait = Some(self.spin.spin_then_park::<P>(limit, || self.filled.is_set()));
         }
         let mut state = self.state.lock();
         while state.wakeups.is_empty() {
-            let Some(limit) = patience() else { break };
-            state.asleep = true;
+            let Some(limit) = timeout() else { break };
+            state.is_asleep = true;
             state = self.state.sleep(state, Some(limit));
-            state.asleep = false;
+            state.is_asleep = false;
         }
         std::mem::swap(&mut state.wakeups, into);
         self.filled.set(false);
         drop(state);
         if let Some(wait) = wait {
-            self.habit.waited::<P>(&wait);
+            self.spin.waited::<P>(&wait);
         }
     }
 }

@@ -11,7 +11,7 @@ pub(crate) struct WorkQueue<J: Send + 'static, P: Primitives = Threads> {
     state: P::Monitor<WorkQueueState<J>>,
     /// Whether jobs wait, for spinning workers.
     waiting: P::Flag,
-    habit: AdaptiveSpin,
+    spin: AdaptiveSpin,
 }
 
 struct WorkQueueState<J> {
@@ -20,10 +20,10 @@ struct WorkQueueState<J> {
     submitted: u64,
     /// Present and maximum number of workers.
     workers: usize,
-    most: usize,
+    max_workers: usize,
     /// Number of idle workers. Those that are not asleep check for jobs before they sleep.
     idle: usize,
-    asleep: usize,
+    sleeping: usize,
     closed: bool,
 }
 
@@ -37,17 +37,17 @@ struct QueuedJob<J> {
 
 impl<J: Send + 'static, P: Primitives> WorkQueue<J, P> {
     /// An empty queue for a maximum number of workers.
-    pub(crate) fn new(most: usize) -> WorkQueue<J, P> {
+    pub(crate) fn new(max: usize) -> WorkQueue<J, P> {
         let state = WorkQueueState {
             jobs: BinaryHeap::new(),
             submitted: 0,
             workers: 0,
-            most,
+            max_workers: max,
             idle: 0,
-            asleep: 0,
+            sleeping: 0,
             closed: false,
         };
-        WorkQueue { state: P::Monitor::new(state), waiting: P::Flag::new(), habit: AdaptiveSpin::new() }
+        WorkQueue { state: P::Monitor::new(state), waiting: P::Flag::new(), spin: AdaptiveSpin::new() }
     }
 
     /// Adds a job. Returns true if another worker is useful: it counts as present from now on.
@@ -57,9 +57,9 @@ impl<J: Send + 'static, P: Primitives> WorkQueue<J, P> {
         let number = Reverse(state.submitted);
         state.jobs.push(QueuedJob { priority, number, job });
         self.waiting.set(true);
-        let (jobs, lingering) = (state.jobs.len(), state.idle - state.asleep);
-        let wakes = state.asleep > 0 && jobs > lingering;
-        let starts_worker = state.workers < state.most && jobs > state.idle;
+        let (jobs, lingering) = (state.jobs.len(), state.idle - state.sleeping);
+        let wakes = state.sleeping > 0 && jobs > lingering;
+        let starts_worker = state.workers < state.max_workers && jobs > state.idle;
         state.workers += usize::from(starts_worker);
         drop(state);
         if wakes {
@@ -81,15 +81,15 @@ impl<J: Send + 'static, P: Primitives> WorkQueue<J, P> {
         if state.jobs.is_empty() && !state.closed {
             state.idle += 1;
             drop(state);
-            let wait = self.habit.spin_then_park::<P>(u64::MAX, || self.waiting.is_set());
+            let wait = self.spin.spin_then_park::<P>(u64::MAX, || self.waiting.is_set());
             state = self.state.lock();
             while state.jobs.is_empty() && !state.closed {
-                state.asleep += 1;
+                state.sleeping += 1;
                 state = self.state.sleep(state, None);
-                state.asleep -= 1;
+                state.sleeping -= 1;
             }
             state.idle -= 1;
-            self.habit.waited::<P>(&wait);
+            self.spin.waited::<P>(&wait);
         }
         if state.closed {
             return None;

@@ -89,7 +89,7 @@ impl PoolFixture {
         let mut talws = Talws::new().registry(self.registry.clone()).agent(agent);
         let report = self.report.clone();
         talws.listen(Box::new(move |step: MicroStep<'_>| {
-            if let MicroStepCause::Event(event) = step.record.occasion {
+            if let MicroStepCause::Event(event) = step.record.cause {
                 let (name, held) = (step.chart.events().name(event), !step.record.held.is_empty());
                 let _ = report.send(format!("{name}{}", if held { " held" } else { "" }));
             }

@@ -102,10 +102,10 @@ impl CameraFaults {
         const MOST_ANGLE: f64 = FRAC_PI_2 - 0.1;
         let (physics, me) = (view.physics(), view.me());
         let half = physics.camera_view_vertical / 2.0;
-        let least = view.angle_below_horizon(height, range);
+        let min = view.angle_below_horizon(height, range);
         let shown = [0.0, physics.camera_tilt].map(|tilt| {
             let axis = me.head_pitch + tilt;
-            ((axis - half).max(least), (axis + half).min(MOST_ANGLE))
+            ((axis - half).max(min), (axis + half).min(MOST_ANGLE))
         });
         let sizes = shown.map(|(from, to)| (to - from).max(0.0));
         let [aside, along] = [(); 2].map(|()| self.stream.uniform());

@@ -80,7 +80,7 @@ fn any_setup() -> impl Strategy<Value = Setup> {
             FieldGeometry::keys().iter().chain(Physics::keys()).chain(MatchRules::keys()).collect();
         for (index, part) in parts {
             let parameter = index.get(&keys);
-            let value = parameter.least + part * (parameter.most - parameter.least);
+            let value = parameter.min + part * (parameter.max - parameter.min);
             let set = setup.field.set(parameter.key, value);
             let set = set.or_else(|_| setup.physics.set(parameter.key, value));
             set.or_else(|_| setup.rules.set(parameter.key, value)).unwrap();

@@ -43,7 +43,7 @@ fn sightings_have_time_head_and_objects_of_their_exposure() {
     assert!(seen[..3].iter().all(|(_, sightings, _)| sightings.is_none()));
     assert!(seen.iter().filter(|(_, sightings, _)| sightings.is_some()).count() > 50);
     let moved = seen.iter().filter_map(|(felt, it, _)| it.as_ref().map(|it| felt.head_yaw - it.head_yaw));
-    assert!(moved.fold(0.0, |most: f64, it| most.max(it.abs())) > 0.1, "the head has turned since");
+    assert!(moved.fold(0.0, |max: f64, it| max.max(it.abs())) > 0.1, "the head has turned since");
 }
 
 #[test]

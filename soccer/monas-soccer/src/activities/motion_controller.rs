@@ -25,7 +25,7 @@ pub struct MotionController {
     motion: MotionArbiter,
     head: HeadController,
     scanning_since: Option<Timestamp>,
-    said: Option<MotionState>,
+    last_state: Option<MotionState>,
 }
 
 /// Limits of the gait in the simulator and, approximately, of a Nao.
@@ -38,7 +38,7 @@ impl Default for MotionController {
             motion: MotionArbiter::new(GAIT),
             head: HeadController::default(),
             scanning_since: None,
-            said: None,
+            last_state: None,
         }
     }
 }
@@ -73,9 +73,9 @@ impl Activity for MotionController {
             done: self.motion.done(),
             result: convert::motion_result(self.motion.end()).into(),
         };
-        if self.said != Some(state) {
+        if self.last_state != Some(state) {
             blackboard.publish(topics::MOTION_STATE, state)?;
-            self.said = Some(state);
+            self.last_state = Some(state);
         }
         Ok(Progress::Done)
     }

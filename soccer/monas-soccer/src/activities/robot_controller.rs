@@ -21,10 +21,10 @@ pub struct RobotController {
     area: (f64, f64),
     circle_radius: f64,
     game: GameTracker,
-    heard: Option<(PublisherId, u64)>,
+    last_announcement: Option<(PublisherId, u64)>,
     button: Button,
     placements: PlacementTracker,
-    said: Option<GameState>,
+    last_state: Option<GameState>,
 }
 
 /// The chest button; only the rising edge counts. `seen_until` is the last reading of the sensors.
@@ -41,10 +41,10 @@ impl Default for RobotController {
             area: (area_depth, area_width),
             circle_radius,
             game: GameTracker::default(),
-            heard: None,
+            last_announcement: None,
             button: Button::default(),
             placements: PlacementTracker::default(),
-            said: None,
+            last_state: None,
         }
     }
 }
@@ -65,9 +65,9 @@ impl Activity for RobotController {
             self.game.announce(convert::phase(announcement.message), announcement.penalized);
         }
         let game_state = self.game_state(announcement.map(|sample| sample.message));
-        if self.said.as_ref() != Some(&game_state) {
+        if self.last_state.as_ref() != Some(&game_state) {
             blackboard.publish(topics::GAME_STATE, game_state)?;
-            self.said = Some(game_state);
+            self.last_state = Some(game_state);
         }
         Ok(Progress::Done)
     }
@@ -80,8 +80,8 @@ impl Activity for RobotController {
 impl RobotController {
     fn is_news(&mut self, header: &Header) -> bool {
         let this = Some((header.publisher, header.sequence));
-        let is_news = self.heard != this;
-        self.heard = this;
+        let is_news = self.last_announcement != this;
+        self.last_announcement = this;
         is_news
     }
 

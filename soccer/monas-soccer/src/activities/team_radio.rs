@@ -24,7 +24,7 @@ use crate::{MotionKind, MotionPhase, MotionResult, PlayerState, Team, TeamReport
 pub struct TeamRadio {
     kicks: Kicks,
     budget: ReportBudget,
-    said: Option<(Timestamp, TeamReport)>,
+    last_report: Option<(Timestamp, TeamReport)>,
     sequence: u32,
 }
 
@@ -75,7 +75,7 @@ impl TeamRadio {
     /// Sends a report, if its value justifies one of the remaining messages.
     fn say(&mut self, blackboard: &mut Blackboard, report: TeamReport) -> Result<(), BoxError> {
         let now = blackboard.now();
-        let worth = match &self.said {
+        let worth = match &self.last_report {
             Some((at, last)) => news(last, &report, now.since(*at)),
             None => f64::INFINITY,
         };
@@ -84,7 +84,7 @@ impl TeamRadio {
         }
         self.sequence = self.sequence.wrapping_add(1);
         let report = TeamReport { sequence: self.sequence, ..report };
-        self.said = Some((now, report));
+        self.last_report = Some((now, report));
         let mut words = Vec::new();
         report.encode_to(&mut words);
         Ok(blackboard.publish(body::SAID, Said { words })?)

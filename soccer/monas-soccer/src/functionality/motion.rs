@@ -45,7 +45,7 @@ pub enum DesiredMotion {
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct PendingRequest {
     /// The requested motion.
-    pub wish: DesiredMotion,
+    pub motion: DesiredMotion,
     /// Desired speed of the ball after a kick, m/s; zero: as fast as the body kicks it.
     pub ball_speed: f64,
     /// Counts the requested skills.
@@ -191,7 +191,7 @@ impl MotionArbiter {
     fn serve(&mut self, now: Timestamp, report: BodyReport, request: PendingRequest, allowed: bool) {
         let ready = self.under_way.is_none() && report.posture == Posture::Upright;
         let heard = allowed && request.age <= MAX_REQUEST_AGE;
-        match request.wish {
+        match request.motion {
             DesiredMotion::Skill(skill) if self.is_new(request.number) => match heard && ready {
                 true => {
                     self.pending = Some((request.number, None));
@@ -232,8 +232,8 @@ mod tests {
         Timestamp::from_nanos(millis * 1_000_000)
     }
 
-    fn request(wish: DesiredMotion, number: u64) -> Option<PendingRequest> {
-        Some(PendingRequest { wish, ball_speed: 0.0, number, age: Duration::from_millis(100) })
+    fn request(motion: DesiredMotion, number: u64) -> Option<PendingRequest> {
+        Some(PendingRequest { motion, ball_speed: 0.0, number, age: Duration::from_millis(100) })
     }
 
     fn ahead() -> DesiredMotion {

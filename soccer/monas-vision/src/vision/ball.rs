@@ -44,7 +44,7 @@ impl BallSearch {
         let mut best: Option<(f64, Circle)> = None;
         for index in 0..self.candidates.len() {
             if let Some((quality, circle)) = self.check(context, self.candidates[index])
-                && best.is_none_or(|(least, _)| quality > least)
+                && best.is_none_or(|(min, _)| quality > min)
             {
                 best = Some((quality, circle));
             }

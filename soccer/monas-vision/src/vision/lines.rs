@@ -103,19 +103,19 @@ impl LineScan {
         let model = context.table.model();
         // A far line is blurred: a part of the step from carpet to white is enough, if it is not
         // noise, of which the smoothed difference has about half the deviation.
-        let least = (0.15 * (model.white_luma - model.green_luma)).max(2.3 * model.deviation).max(6.0) as i32;
+        let min = (0.15 * (model.white_luma - model.green_luma)).max(2.3 * model.deviation).max(6.0) as i32;
         let luma = |index: usize| i32::from(self.profile[index]);
         let gradient = |index: usize| luma(index + 1) - luma(index - 1);
         let mut rise: Option<(usize, i32)> = None;
         let mut index = 1;
         while index + 1 < self.profile.len() {
             let change = gradient(index);
-            if change >= least {
+            if change >= min {
                 // The steepest place of the rise.
                 if rise.is_none_or(|(position, steepest)| change > steepest || index > position + 3) {
                     rise = Some((index, change));
                 }
-            } else if change <= -least
+            } else if change <= -min
                 && let Some((begin, _)) = rise.take()
             {
                 let (mut fall, mut steepest) = (index, change);

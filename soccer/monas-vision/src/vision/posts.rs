@@ -138,8 +138,8 @@ fn post(
         false => {
             let ratio = width / expected;
             let slack = 2.0 * step / expected;
-            let most = if paint == GoalPaint::White { 1.5 } else { 1.7 };
-            if !(0.5 - slack..=most + slack).contains(&ratio) {
+            let max = if paint == GoalPaint::White { 1.5 } else { 1.7 };
+            if !(0.5 - slack..=max + slack).contains(&ratio) {
                 return None;
             }
             // The foot is on the field, with carpet below it.

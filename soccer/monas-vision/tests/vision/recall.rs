@@ -76,8 +76,8 @@ fn check_lines(all: &Measures) {
     assert!(all.false_segments() <= 0.02, "{} false parts of lines", all.segments.wrong);
     let (offset, angle) = (&all.segment_offsets, &all.segment_angles);
     assert!(mean(offset) <= 0.02 && ninth_decile(offset) <= 0.04, "{} m off", mean(offset));
-    let (angle, most) = (mean(angle).to_degrees(), ninth_decile(angle).to_degrees());
-    assert!(angle <= 1.5 && most <= 3.0, "{angle} degrees off, {most} in nine of ten");
+    let (angle, max) = (mean(angle).to_degrees(), ninth_decile(angle).to_degrees());
+    assert!(angle <= 1.5 && max <= 3.0, "{angle} degrees off, {max} in nine of ten");
     let border = &all.border_points;
     assert!(border.found > 5 * all.images, "{} points of the border", border.found);
     assert!(mean(&border.distance_errors) <= 0.03, "border: {}", mean(&border.distance_errors));

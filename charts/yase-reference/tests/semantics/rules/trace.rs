@@ -45,7 +45,7 @@ impl Host for Listener {
 
     fn trace(&mut self, chart: &CompiledChart, record: &TraceRecord<'_>) {
         self.times.push(record.time);
-        self.occasions.push(record.occasion);
+        self.occasions.push(record.cause);
         self.exits.extend(record.exits);
         self.entries.extend(record.entries);
         self.effects.extend(record.effects);

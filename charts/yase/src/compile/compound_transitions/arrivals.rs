@@ -63,20 +63,20 @@ impl CompoundPathSearch<'_> {
         &self,
         begin: PathStart<'_>,
         target: NodeId,
-        trail: &PartialPath,
+        path: &PartialPath,
     ) -> Option<PathArrival> {
         let PathStart::States(source, [], _) = begin else { return None };
         if self.chart.node(source).kind == NodeKind::Start {
             return None;
         }
-        let is_only = trail.arrival.is_none() && trail.open.is_empty() && trail.ends.is_empty();
+        let is_only = path.arrival.is_none() && path.open.is_empty() && path.ends.is_empty();
         let by_itself =
             self.chart.node(target).kind != NodeKind::Join || self.semantics.join == JoinMode::Each;
         let join = *self.join_numbers.get(&target).filter(|_| is_only && by_itself)?;
         let region = self.region_in(self.joins[join].around, source)?;
         let index = self.joins[join].regions.iter().position(|&other| other == region)?;
         let slot = self.joins[..join].iter().map(|join| join.regions.len()).sum::<usize>() + index;
-        Some(PathArrival { join, slot, region, segment: trail.segments.len() - 1, passes: false })
+        Some(PathArrival { join, slot, region, segment: path.segments.len() - 1, passes: false })
     }
 
     /// A path that ends where its region arrives before others.
@@ -84,26 +84,26 @@ impl CompoundPathSearch<'_> {
         &mut self,
         begin: PathStart<'_>,
         arrival: PathArrival,
-        trail: &PartialPath,
+        path: &PartialPath,
     ) -> Option<CompoundPath> {
         let PathStart::States(source, ..) = begin else { return None };
         self.count += 1;
         Some(CompoundPath {
-            segments: trail.segments.clone(),
+            segments: path.segments.clone(),
             source,
             others: Vec::new(),
             scope: arrival.region,
             leaves: PathVec::new(),
             region: self.regions[arrival.region.0 as usize],
-            condition: self.arrival_condition(trail),
+            condition: self.arrival_condition(path),
             change: ConfigurationChange::Vacates,
             arrival: Some(arrival),
         })
     }
 
     /// A path without a trigger arrives when its source has completed.
-    pub(super) fn arrival_condition(&self, trail: &PartialPath) -> Option<EnablingCondition> {
-        let first = self.chart.transition(*trail.segments.first()?);
+    pub(super) fn arrival_condition(&self, path: &PartialPath) -> Option<EnablingCondition> {
+        let first = self.chart.transition(*path.segments.first()?);
         first.expression.trigger.is_none().then_some(EnablingCondition::Completed)
     }
 }

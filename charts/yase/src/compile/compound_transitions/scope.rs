@@ -14,37 +14,37 @@ impl CompoundPathSearch<'_> {
         &mut self,
         source: NodeId,
         others: &[NodeId],
-        trail: &PartialPath,
+        path: &PartialPath,
     ) -> Option<(NodeId, ConfigurationChange)> {
         let stops = self.semantics.terminate == TerminateExit::Nothing
-            && trail.ends.iter().all(|&end| self.leads_to_terminate(end));
+            && path.ends.iter().all(|&end| self.leads_to_terminate(end));
         let mut hull = NodeSpan::of(self.layout.index_of(source));
         for &node in others {
             hull = hull.with(NodeSpan::of(self.layout.index_of(node)));
         }
-        for &end in &trail.ends {
+        for &end in &path.ends {
             // only if there is no other end: this search can be long
             hull = hull.with(self.target_span(end).unwrap_or_else(|| self.terminate_span(end)));
         }
         if self.walks_segments() {
-            hull = self.passed(trail).fold(hull, NodeSpan::with);
+            hull = self.passed(path).fold(hull, NodeSpan::with);
         }
-        if let Some(arrival) = trail.arrival {
+        if let Some(arrival) = path.arrival {
             let around = self.chart.node(arrival.region).parent.unwrap_or(arrival.region);
             hull = hull.with(NodeSpan::of(self.layout.index_of(around)));
         }
         let is_inside = node_span::lowest_node(self.chart, self.layout, hull) == source;
-        match (self.is_internal(source, trail), is_inside, self.semantics.structure) {
+        match (self.is_internal(source, path), is_inside, self.semantics.structure) {
             (true, true, _) => {
-                let passes = self.walks_segments() && trail.segments.len() > 1;
-                let still = stops || trail.ends[..] == [source] && !passes;
+                let passes = self.walks_segments() && path.segments.len() > 1;
+                let still = stops || path.ends[..] == [source] && !passes;
                 let change = if still { ConfigurationChange::None } else { ConfigurationChange::Scope };
                 return Some((source, change));
             }
             (true, false, StructureRules::Strict) => return None,
             _ => {}
         }
-        if let Some(vacated) = self.completes_ancestor(source, others, trail) {
+        if let Some(vacated) = self.completes_ancestor(source, others, path) {
             return Some((vacated, ConfigurationChange::Vacates));
         }
         let scope = node_span::lowest_or(self.chart, self.layout, source, hull)?;
@@ -56,28 +56,28 @@ impl CompoundPathSearch<'_> {
     }
 
     /// The connectors on a path.
-    fn passed(&self, trail: &PartialPath) -> impl Iterator<Item = NodeSpan> {
-        let targets = trail.segments.iter().map(|&id| self.chart.transition(id).target);
+    fn passed(&self, path: &PartialPath) -> impl Iterator<Item = NodeSpan> {
+        let targets = path.segments.iter().map(|&id| self.chart.transition(id).target);
         let connectors = targets.filter(|&node| self.roles.of(node).is_connector());
         connectors.map(|node| NodeSpan::of(self.layout.index_of(node)))
     }
 
     /// In UML only the segment out of a state can be internal (local).
-    fn is_internal(&self, source: NodeId, trail: &PartialPath) -> bool {
+    fn is_internal(&self, source: NodeId, path: &PartialPath) -> bool {
         let internal = |&id: &TransitionId| self.chart.transition(id).internal;
         match self.semantics.structure {
-            StructureRules::Strict => trail.segments.iter().any(internal),
+            StructureRules::Strict => path.segments.iter().any(internal),
             StructureRules::Uml => {
                 let from_source = |id: &&TransitionId| self.chart.transition(**id).source == source;
-                trail.segments.iter().filter(from_source).any(internal)
+                path.segments.iter().filter(from_source).any(internal)
             }
         }
     }
 
     /// The composite that remains without an active child when the target is an ancestor of the
     /// source that then counts as complete.
-    fn completes_ancestor(&self, source: NodeId, others: &[NodeId], trail: &PartialPath) -> Option<NodeId> {
-        let (&[target], TransitionToAncestor::Completed) = (trail.ends.as_slice(), self.semantics.ancestor)
+    fn completes_ancestor(&self, source: NodeId, others: &[NodeId], path: &PartialPath) -> Option<NodeId> {
+        let (&[target], TransitionToAncestor::Completed) = (path.ends.as_slice(), self.semantics.ancestor)
         else {
             return None;
         };
@@ -94,7 +94,7 @@ impl CompoundPathSearch<'_> {
             let passed = self.layout.index_of(self.chart.transition(id).target);
             passed == self.layout.index_of(target) || self.layout.contains(node, passed)
         };
-        (!self.walks_segments() || trail.segments.iter().all(inside)).then_some(vacated)
+        (!self.walks_segments() || path.segments.iter().all(inside)).then_some(vacated)
     }
 
     /// The span of all possible ends of a path behind a node, except a TERMINATE at which nothing

@@ -27,17 +27,17 @@ fn real_time() -> CheckResult {
 /// The highest permitted priority, found by trying from the highest that the limits allow: the
 /// system decides, since the limits do not concern privileged users.
 fn real_time_by(permits: impl Fn(u8) -> bool, limit: impl Fn() -> Option<u64>) -> CheckResult {
-    let most = match permits(99) {
+    let max = match permits(99) {
         true => Some(99),
         false => limit().map(|limit| if permits(1) { limit } else { 0 }),
     };
-    match most {
+    match max {
         Some(0) => CheckResult::warning(
             AREA,
             "real-time scheduling is not permitted: agents with is_real_time run as ordinary threads",
             "as root write `@realtime - rtprio 99` into /etc/security/limits.conf and join that group",
         ),
-        Some(most) => CheckResult::ok(AREA, format!("real-time scheduling up to priority {most}")),
+        Some(max) => CheckResult::ok(AREA, format!("real-time scheduling up to priority {max}")),
         None => CheckResult::warning(
             AREA,
             "permission for real-time scheduling is unknown",

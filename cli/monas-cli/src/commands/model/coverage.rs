@@ -140,7 +140,7 @@ fn write_text(covered: &ChartCounts, console: &mut CommandOutput<'_>) -> Result<
         covered.chart.name,
         covered.players.join(", ")
     )?;
-    for UncoveredElement { what, name, .. } in covered.missed() {
+    for UncoveredElement { kind: what, name, .. } in covered.missed() {
         writeln!(console.out, "  {what}: {name}")?;
     }
     Ok(())
@@ -149,7 +149,7 @@ fn write_text(covered: &ChartCounts, console: &mut CommandOutput<'_>) -> Result<
 /// A chart's coverage as JSON.
 fn object(covered: &ChartCounts) -> Value {
     let names = |kind: &str| -> Vec<String> {
-        covered.missed().into_iter().filter(|missed| missed.what == kind).map(|missed| missed.path).collect()
+        covered.missed().into_iter().filter(|missed| missed.kind == kind).map(|missed| missed.path).collect()
     };
     json!({
         "kind": "coverage",
@@ -160,7 +160,7 @@ fn object(covered: &ChartCounts) -> Value {
         "transitions": covered.transitions().all,
         "transitions_missed": names(count::NEVER_FIRED),
         "guards": covered.guards_held().all,
-        "guards_held": covered.guards_held().met,
+        "guards_held": covered.guards_held().covered,
         "guards_with_alternative": covered.guards_refused().all,
         "guards_never_refused": names(count::ALWAYS_HELD),
     })
@@ -196,7 +196,7 @@ fn marks(covered: &ChartCounts) -> Highlights {
             set(Element::Transition(id), if is_met { Mark::Added } else { Mark::Missed });
         }
     }
-    for missed in covered.missed().iter().filter(|missed| missed.what == count::ALWAYS_HELD) {
+    for missed in covered.missed().iter().filter(|missed| missed.kind == count::ALWAYS_HELD) {
         if covered.fired[missed.transition.0 as usize] > 0 {
             set(Element::Transition(missed.transition), Mark::Changed);
         }

@@ -29,7 +29,7 @@ impl Pacer {
     /// Waits until a simulated time may be passed, or until an interrupt, but no longer than
     /// [`MAX_WAIT`]. Returns whether the wait is over: a held run still handles requests.
     pub(super) fn wait(&mut self, simulated: Duration, interrupt: &Interrupt) -> bool {
-        let patience = self.clock.elapsed().saturating_add(MAX_WAIT);
+        let latest = self.clock.elapsed().saturating_add(MAX_WAIT);
         loop {
             let factor = self.pace.factor();
             if factor != self.factor {
@@ -41,13 +41,12 @@ impl Pacer {
             }
             let pace = &self.pace;
             let due = due(self.anchor, simulated, factor);
-            self.clock
-                .wait_until_or(due.min(patience), || interrupt.is_requested() || pace.factor() != factor);
+            self.clock.wait_until_or(due.min(latest), || interrupt.is_requested() || pace.factor() != factor);
             if interrupt.is_requested() {
                 return true;
             }
             if pace.factor() == factor {
-                return due <= patience;
+                return due <= latest;
             }
         }
     }

@@ -32,8 +32,8 @@ struct StreamStatistics {
 struct ValueRange {
     count: u64,
     sum: f64,
-    least: f64,
-    most: f64,
+    min: f64,
+    max: f64,
 }
 
 /// The quantity to report.
@@ -157,8 +157,8 @@ fn span(from: u64, to: u64) -> f64 {
 
 impl ValueRange {
     fn add(&mut self, value: f64) {
-        self.least = if self.count == 0 { value } else { self.least.min(value) };
-        self.most = self.most.max(value);
+        self.min = if self.count == 0 { value } else { self.min.min(value) };
+        self.max = self.max.max(value);
         self.sum += value;
         self.count += 1;
     }
@@ -170,14 +170,14 @@ impl ValueRange {
     fn text(self) -> String {
         match self.mean() {
             Some(mean) => {
-                format!("{:.1} ms ({:.1} to {:.1})", mean * 1e3, self.least * 1e3, self.most * 1e3)
+                format!("{:.1} ms ({:.1} to {:.1})", mean * 1e3, self.min * 1e3, self.max * 1e3)
             }
             None => "unknown".into(),
         }
     }
 
     fn object(self) -> Value {
-        json!({"mean": self.mean(), "least": self.mean().map(|_| self.least), "most": self.mean().map(|_| self.most)})
+        json!({"mean": self.mean(), "least": self.mean().map(|_| self.min), "most": self.mean().map(|_| self.max)})
     }
 }
 

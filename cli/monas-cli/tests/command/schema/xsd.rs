@@ -72,8 +72,8 @@ fn value(name: &str, text: &str, rule: Node<'_, '_>, wrong: &mut Vec<String>) {
         wrong.push(format!("{name} is none of the words: {text}"));
     }
     let number = |text: &str| text.parse::<f64>().expect("a number");
-    let too_small = facets("minInclusive").iter().any(|least| number(text) < number(least));
-    let too_large = facets("maxInclusive").iter().any(|most| number(text) > number(most));
+    let too_small = facets("minInclusive").iter().any(|min| number(text) < number(min));
+    let too_large = facets("maxInclusive").iter().any(|max| number(text) > number(max));
     if too_small || too_large {
         wrong.push(format!("{name} is out of range: {text}"));
     }

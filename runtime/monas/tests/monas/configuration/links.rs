@@ -33,7 +33,7 @@ fn a_link_is_read() {
     assert_eq!(link.transport, LinkTransport::Local { folder: Some("sockets".into()) });
     let settings = &link.settings;
     assert_eq!(
-        (settings.name.as_str(), settings.guests, settings.beat),
+        (settings.name.as_str(), settings.accepts_unlinked, settings.beat),
         ("robot_2", true, Duration::from_millis(50))
     );
     let sent: Vec<_> =

@@ -83,7 +83,7 @@ fn grammar() -> Grammar {
         .attribute(attribute("i", Kind::whole()).or("7"))
         .attribute(attribute("yes", Kind::Flag))
         .attribute(attribute("no", Kind::Flag).or("1"))
-        .attribute(attribute("half", Kind::Duration { least: Duration::ZERO }))
+        .attribute(attribute("half", Kind::Duration { min: Duration::ZERO }))
         .attribute(attribute("word", Kind::Word(vec!["left", "right"])))
         .attribute(attribute("color", Kind::Text).required());
     Grammar::default().root(element)

@@ -319,10 +319,10 @@ fn recorded(messages: &[Kept], agent: &str, topic: &str) -> usize {
 /// Asserts that at least these numbers of messages were recorded on topics, and that all were
 /// compared.
 fn assert_compared(messages: &[Kept], outcome: &Outcome, expected: &[(&str, &str, usize)]) {
-    for (agent, topic, least) in expected {
+    for (agent, topic, min) in expected {
         let recorded = recorded(messages, agent, topic);
         assert_eq!(outcome.compared(agent, topic), recorded as u64, "{agent} {topic}");
-        assert!(recorded >= *least, "{agent} {topic}: {recorded}");
+        assert!(recorded >= *min, "{agent} {topic}: {recorded}");
     }
 }
 

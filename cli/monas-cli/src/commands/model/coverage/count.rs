@@ -28,19 +28,19 @@ pub(crate) struct ChartCounts {
 /// A share of a total.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) struct Fraction {
-    pub(crate) met: usize,
+    pub(crate) covered: usize,
     pub(crate) all: usize,
 }
 
 impl fmt::Display for Fraction {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} of {}", self.met, self.all)
+        write!(f, "{} of {}", self.covered, self.all)
     }
 }
 
 /// An element that was not covered.
 pub(crate) struct UncoveredElement {
-    pub(crate) what: &'static str,
+    pub(crate) kind: &'static str,
     pub(crate) name: String,
     /// The same with paths.
     pub(crate) path: String,
@@ -143,7 +143,7 @@ impl ChartCounts {
     pub(crate) fn missed(&self) -> Vec<UncoveredElement> {
         let names = DiagnosticNames::new(&self.chart);
         let states = self.basics().filter(|id| self.entered[id.0 as usize] == 0).map(|id| UncoveredElement {
-            what: NEVER_ACTIVE,
+            kind: NEVER_ACTIVE,
             name: names.name(id),
             path: names.path(id),
             transition: TransitionId(u32::MAX),
@@ -152,7 +152,7 @@ impl ChartCounts {
             let expression = &self.chart.transition(transition).expression;
             let colon = if expression.is_empty() { String::new() } else { format!(" : {expression}") };
             let (name, path) = (names.transition(transition), names.transition_path(transition));
-            UncoveredElement { what, name: name + &colon, path: path + &colon, transition }
+            UncoveredElement { kind: what, name: name + &colon, path: path + &colon, transition }
         };
         let unfired = self.meant().map(|(id, _)| id).filter(|id| self.fired[id.0 as usize] == 0);
         let refused = self.refused();
@@ -163,8 +163,8 @@ impl ChartCounts {
 }
 
 fn share(counts: impl Iterator<Item = u64>) -> Fraction {
-    counts.fold(Fraction { met: 0, all: 0 }, |share, count| Fraction {
-        met: share.met + usize::from(count > 0),
+    counts.fold(Fraction { covered: 0, all: 0 }, |share, count| Fraction {
+        covered: share.covered + usize::from(count > 0),
         all: share.all + 1,
     })
 }
@@ -212,21 +212,21 @@ mod tests {
         assert_eq!(ChartCounts::chart_index(&chart, &mut known), index, "equal charts are one");
         let covered = &mut known[index];
         assert!(covered.count(&fired(&chart, "c")));
-        assert_eq!(covered.guards_held(), Fraction { met: 1, all: 2 });
+        assert_eq!(covered.guards_held(), Fraction { covered: 1, all: 2 });
         assert_eq!(
             covered.guards_refused(),
-            Fraction { met: 0, all: 2 },
+            Fraction { covered: 0, all: 2 },
             "nothing is tried before the first"
         );
         assert!(covered.count(&fired(&chart, "b")));
         assert_eq!(
             covered.guards_refused(),
-            Fraction { met: 1, all: 2 },
+            Fraction { covered: 1, all: 2 },
             "the guard of higher priority has failed"
         );
-        assert_eq!(covered.states(), Fraction { met: 2, all: 4 });
+        assert_eq!(covered.states(), Fraction { covered: 2, all: 4 });
         let missed: Vec<String> =
-            covered.missed().iter().map(|missed| format!("{}: {}", missed.what, missed.name)).collect();
+            covered.missed().iter().map(|missed| format!("{}: {}", missed.kind, missed.name)).collect();
         let expected = [
             "never active: a",
             "never active: d",
@@ -242,7 +242,7 @@ mod tests {
         ];
         assert_eq!(missed, expected);
         assert!(covered.count(&fired(&chart, "d")));
-        assert_eq!(covered.guards_refused(), Fraction { met: 2, all: 2 });
+        assert_eq!(covered.guards_refused(), Fraction { covered: 2, all: 2 });
     }
 
     #[test]

@@ -91,8 +91,7 @@ fn live_run_until(
             more();
         }
     }
-    let is_there =
-        |(agent, topic, least): &(&str, &str, usize)| recorded(&tape.kept(), agent, topic) >= *least;
+    let is_there = |(agent, topic, min): &(&str, &str, usize)| recorded(&tape.kept(), agent, topic) >= *min;
     while !expected.iter().all(is_there) {
         calls.recv_timeout(Duration::from_secs(20)).unwrap();
     }
@@ -225,7 +224,7 @@ fn in_real_time_changes_are_made_again_between_the_turns_between_which_they_were
             "player" => &[("test/news", 20), ("test/ball", 5), ("monas/model", 6), ("monas/cycle", 20)],
             _ => &[("test/ball", 20), ("test/news", 20), ("test/game", 5), ("monas/cycle", 40)],
         };
-        let expected: Vec<_> = topics.iter().map(|(topic, least)| (agent, *topic, *least)).collect();
+        let expected: Vec<_> = topics.iter().map(|(topic, min)| (agent, *topic, *min)).collect();
         assert_compared(&messages, &outcome, &expected);
     }
 }
