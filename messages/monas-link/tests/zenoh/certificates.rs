@@ -105,7 +105,7 @@ fn a_host_publishes_under_its_own_name_only_and_what_it_may() {
     let (access, errors) =
         AccessList::parse("robot_1 publish **\nrobot_2 publish soccer/ball\nlaptop publish soccer/command");
     assert_eq!(errors, []);
-    let settings = LinkSettings { access, guests: true, ..everything() };
+    let settings = LinkSettings { access, accepts_unlinked: true, ..everything() };
     let first = End::with("robot_1", settings, &ZenohSettings { tls: tls("robot_1"), ..listening }).unwrap();
     let second = End::new("robot_2", &ZenohSettings { tls: tls("robot_2"), ..connecting.clone() });
     await_that("the introductions", || first.knows("robot_2") && second.knows("robot_1"));

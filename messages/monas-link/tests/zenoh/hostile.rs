@@ -51,7 +51,7 @@ fn noise_on_the_port_has_no_effect() {
 #[test]
 fn keys_stamps_and_lengths_that_cannot_be_are_counted_and_do_no_harm() {
     let (listening, connecting) = pair("tcp");
-    let settings = LinkSettings { guests: true, ..everything() };
+    let settings = LinkSettings { accepts_unlinked: true, ..everything() };
     let first = End::with("robot_1", settings, &listening).unwrap();
     let intruder = program(&connecting).unwrap();
     let put = |key: &str, payload: Vec<u8>, stamp: Vec<u8>| {

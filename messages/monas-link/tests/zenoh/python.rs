@@ -20,7 +20,7 @@ fn a_client_in_python_reads_the_ball_and_commands_the_robot() {
         return;
     }
     let (listening, _) = pair("tcp");
-    let settings = LinkSettings { guests: true, ..LinkSettings::default() };
+    let settings = LinkSettings { accepts_unlinked: true, ..LinkSettings::default() };
     let settings = settings.sending("soccer/ball").receiving("soccer/command");
     let robot = End::with("robot_1", settings, &listening).unwrap();
     let client = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/client.py");
