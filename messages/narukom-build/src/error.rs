@@ -1,10 +1,10 @@
 //! The error type of schema compilation.
 
-use std::io;
 use std::path::Path;
+use std::{fmt, io};
 
 /// An error of message generation. The text names the file, message or field at fault.
-#[derive(Debug, thiserror::Error)]
+#[derive(thiserror::Error)]
 #[error("{text}")]
 pub struct Error {
     kind: ErrorKind,
@@ -23,7 +23,8 @@ pub enum ErrorKind {
     Syntax,
     /// A file declares no package.
     Package,
-    /// A name does not follow the naming style of its kind, so its Rust name would differ.
+    /// A name does not follow the naming style of its kind, so its Rust name would differ, or it is
+    /// taken.
     Name,
     /// A message of another package is used without a mapping to its Rust module.
     Unmapped,
@@ -46,8 +47,23 @@ impl Error {
         Error { kind: ErrorKind::Output, text, source: Some(source) }
     }
 
+    /// The error with the position of its cause in front.
+    pub(crate) fn at(self, position: &str) -> Error {
+        Error { text: format!("{position}: {}", self.text), ..self }
+    }
+
     /// The kind of the error.
     pub fn kind(&self) -> ErrorKind {
         self.kind
+    }
+}
+
+/// The text with its cause: an error that `main` of a build script returns is printed in this form.
+impl fmt::Debug for Error {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match &self.source {
+            Some(source) => write!(formatter, "{}: {source}", self.text),
+            None => formatter.write_str(&self.text),
+        }
     }
 }

@@ -41,6 +41,7 @@ mod error;
 mod folder;
 mod generate;
 mod names;
+mod schema_names;
 mod types;
 
 use std::collections::BTreeSet;
@@ -119,6 +120,7 @@ impl Compiler {
         let types = TypePaths::new(package, known, &self.modules);
         let mut reflection = String::new();
         for file in schema.own_files(package) {
+            schema_names::check(file)?;
             generate::file(file, &types, &mut reflection)?;
         }
         let structs = self.structs(schema, package, &types)?;
@@ -230,7 +232,10 @@ fn checked_package(file: &FileDescriptorProto) -> Result<&str, Error> {
     if package.split('.').all(plain) {
         return Ok(package);
     }
-    let text = format!("{name}: the package `{package}` is not names in snake_case separated by dots");
+    let text = match package {
+        "" => format!("{name}: the file declares no package: write for example `package my_team;`"),
+        _ => format!("{name}: the package `{package}` is not names in snake_case separated by dots"),
+    };
     Err(Error::new(ErrorKind::Package, text))
 }
 

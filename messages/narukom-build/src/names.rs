@@ -22,6 +22,18 @@ pub(crate) fn type_name(name: &str) -> Result<&str, Error> {
     Ok(name)
 }
 
+/// Refuses the name of a type of the package that the generated code would take for Rust's.
+pub(crate) fn check_shadowing(name: &str) -> Result<(), Error> {
+    match ["Into", "Option", "Result"].contains(&name) {
+        true => {
+            let text =
+                format!("the type `{name}` cannot have the name of a type of Rust that generated code uses");
+            Err(Error::new(ErrorKind::Name, text))
+        }
+        false => Ok(()),
+    }
+}
+
 /// The Rust module that holds the types nested in a message.
 pub(crate) fn module_name(message: &str) -> String {
     let mut module = String::new();

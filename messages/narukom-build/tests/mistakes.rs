@@ -49,6 +49,35 @@ fn names_are_in_the_style_of_their_kind() {
 }
 
 #[test]
+fn names_are_reported_with_file_line_and_column() {
+    let file = |body: &str| format!("syntax = \"proto3\";\npackage p;\n{body}");
+    check(
+        &file("message A { int32 n = 1;\n  int32 headYaw = 2; }"),
+        ErrorKind::Name,
+        "a.proto:4:9: the field `headYaw`",
+    );
+    check(&file("message RobotID {}"), ErrorKind::Name, "a.proto:3:9: the type `RobotID`");
+    check(&file("enum role { NONE = 0; }"), ErrorKind::Name, "a.proto:3:6: the type `role`");
+    let nested = "message A { map<string, int32> m = 1; message B { enum c { NONE = 0; } } }";
+    check(&file(nested), ErrorKind::Name, "a.proto:3:56: the type `c`");
+}
+
+#[test]
+fn types_do_not_hide_those_that_generated_code_uses() {
+    let file = |body: &str| format!("syntax = \"proto3\"; package p; {body}");
+    check(&file("message Option {}"), ErrorKind::Name, "a.proto:1:39: the type `Option`");
+    compile(&[("a.proto", &file("message Walk { message Result {} }"))], Compiler::new()).0.unwrap();
+}
+
+/// Cargo prints what `main` of a build script returns.
+#[test]
+fn build_scripts_print_the_text_of_an_error() {
+    let error = compile(&[("a.proto", "syntax = \"proto3\";")], Compiler::new()).0.unwrap_err();
+    assert_eq!(format!("{error:?}"), error.to_string());
+    assert!(error.to_string().contains("declares no package"), "{error}");
+}
+
+#[test]
 fn no_file_is_written_for_a_schema_with_a_mistake() {
     let (_, folder) = compile(&[("a.proto", "syntax = \"proto2\"; package p;")], Compiler::new());
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
