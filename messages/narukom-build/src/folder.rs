@@ -1,7 +1,10 @@
 //! Compilation of all `.proto` files or all Rust files of a folder, without listing them.
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
+
+use prost_types::FileDescriptorProto;
 
 use crate::error::{Error, ErrorKind};
 use crate::{Compiler, SchemaSet, names, write};
@@ -26,7 +29,12 @@ fn compile_into(folder: &Path, target: &Path) -> Result<(), Error> {
     let protos = files(folder, "proto")?;
     let packages = match protos.is_empty() {
         true => Default::default(),
-        false => SchemaSet::read(&protos, &[folder])?.packages()?,
+        false => {
+            let schema = SchemaSet::read(&protos, &[folder])?;
+            let packages = schema.packages()?;
+            check_unique(&schema)?;
+            packages
+        }
     };
     let compiler = packages
         .iter()
@@ -42,6 +50,29 @@ fn compile_into(folder: &Path, target: &Path) -> Result<(), Error> {
     };
     let text: String = packages.iter().enumerate().map(module).collect();
     write(&target.join("messages.rs"), text.as_bytes())
+}
+
+/// The packages share one module: without this check, the compiler would report ambiguous names of
+/// generated code.
+fn check_unique(schema: &SchemaSet) -> Result<(), Error> {
+    let mut known: BTreeMap<&str, &FileDescriptorProto> = BTreeMap::new();
+    for file in schema.set.file.iter().filter(|file| schema.requested.contains(file.name())) {
+        let messages = file.message_type.iter().map(|message| message.name());
+        for name in messages.chain(file.enum_type.iter().map(|enumeration| enumeration.name())) {
+            if let Some(other) = known.insert(name, file) {
+                let text = format!(
+                    "{} and {} both declare `{name}`, in the packages `{}` and `{}`: name one of them otherwise, \
+                     since the packages of a folder share one module",
+                    other.name(),
+                    file.name(),
+                    other.package(),
+                    file.package()
+                );
+                return Err(Error::new(ErrorKind::Name, text));
+            }
+        }
+    }
+    Ok(())
 }
 
 /// Finds every Rust file of a folder except `lib.rs`, `main.rs` and `build.rs`, and writes
@@ -170,5 +201,17 @@ mod tests {
         let text = read(&target, "messages.rs");
         assert!(text.contains("/one.rs") && text.contains("/two.rs"), "{text}");
         assert!(read(&target, "two.rs").contains("crate::A"), "{}", read(&target, "two.rs"));
+    }
+
+    #[test]
+    fn packages_of_a_folder_do_not_declare_the_same_name() {
+        let source = folder(&[
+            ("a.proto", "syntax = \"proto3\"; package one; message Ball { uint32 n = 1; }"),
+            ("b.proto", "syntax = \"proto3\"; package two; enum Ball { NONE = 0; }"),
+        ]);
+        let error = compile_into(source.path(), folder(&[]).path()).unwrap_err();
+        assert_eq!(error.kind(), ErrorKind::Name);
+        let said = error.to_string();
+        assert!(said.contains("a.proto and b.proto both declare `Ball`"), "{said}");
     }
 }
