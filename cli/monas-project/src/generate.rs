@@ -17,6 +17,7 @@ use yase::{Diagnostic, Statechart};
 
 use crate::error::{Error, ErrorKind};
 use crate::new_project::RESERVED_NAMES;
+use crate::packages::package_folder;
 use crate::project::Project;
 
 /// A generated crate.
@@ -108,6 +109,7 @@ fn crate_name(folder: &Path, project: &Project) -> Result<String, Error> {
     let is_same = |other: &str| other.replace('-', "_") == name;
     if RESERVED_NAMES.into_iter().any(is_same)
         || project.team_package().is_some_and(|package| is_same(&package))
+        || package_folder(project.root(), &name).is_some_and(|other| other != folder)
     {
         let message = format!("`{name}` is the name of another crate");
         return refused(message, &format!("name the folder otherwise: --to statecharts/{name}_chart"));
@@ -251,7 +253,10 @@ mod tests {
         let project = Project::around(&manifest).expect("a project");
         let name = |name: &str| crate_name(&project.statecharts().join(name), &project);
         assert_eq!(name("goalie").expect("it is free"), "goalie");
-        for taken in ["activities", "core", "monas_cli", "my_team"] {
+        let module = folder.path().join("modules/look");
+        fs::create_dir_all(&module).expect("folders");
+        fs::write(module.join("Cargo.toml"), "[package]\nname = \"look\"\n").expect("a file");
+        for taken in ["activities", "core", "look", "monas_cli", "my_team"] {
             let refused = name(taken).expect_err("it is taken").to_string();
             assert!(refused.contains(&format!("`{taken}` is the name of another crate")), "{refused}");
         }

@@ -27,6 +27,7 @@ mod manifest;
 mod new_activity;
 mod new_module;
 mod new_project;
+mod packages;
 mod project;
 mod project_root;
 

@@ -7,6 +7,7 @@ use crate::error::{Error, ErrorKind};
 use crate::manifest::with_members;
 use crate::new_activity::{TEMPLATE, project_for, snake_case};
 use crate::new_project::{RESERVED_NAMES, write};
+use crate::packages::{is_locked, package_folder};
 
 const MANIFEST: &str = include_str!("template/module/Cargo.toml.txt");
 
@@ -37,6 +38,15 @@ pub fn create_module(name: &str, here: &Path) -> Result<NewModule, Error> {
         return Err(Error::new(ErrorKind::Argument, message));
     }
     let folder = project.join("modules").join(&package);
+    if let Some(other) = package_folder(&project, &package).filter(|other| *other != folder) {
+        let message =
+            format!("`{package}` is the name of the package in {}: choose another name", other.display());
+        return Err(Error::new(ErrorKind::Argument, message));
+    }
+    if is_locked(&project.join("Cargo.lock"), &package) {
+        let message = format!("`{package}` is a crate that the project depends on: choose another name");
+        return Err(Error::new(ErrorKind::Argument, message));
+    }
     let created = fs::create_dir_all(project.join("modules")).and_then(|()| fs::create_dir(&folder));
     created.map_err(|error| match error.kind() {
         io::ErrorKind::AlreadyExists => {
@@ -65,5 +75,31 @@ fn member(project: &Path) -> io::Result<Option<PathBuf>> {
     match text == there {
         true => Ok(None),
         false => monas_files::write(&path, text).map(|()| Some(path)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::create_project;
+
+    #[test]
+    fn a_module_does_not_have_the_name_of_another_package() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let project = folder.path().join("my-team");
+        create_project(&project, None).expect("a project");
+        create_module("Look", &project).expect("the name is free");
+        fs::create_dir_all(project.join("statecharts/walk")).expect("folders");
+        fs::write(project.join("statecharts/walk/Cargo.toml"), "[package]\nname = \"walk\"\n")
+            .expect("a file");
+        for (name, taken) in [("MyTeam", "my_team"), ("Walk", "walk"), ("Serde", "serde")] {
+            let refused = create_module(name, &project).expect_err("it is taken");
+            assert_eq!(refused.kind(), ErrorKind::Argument);
+            assert!(refused.to_string().starts_with(&format!("`{taken}` is ")), "{refused}");
+            assert!(!project.join("modules").join(taken).exists());
+        }
+        assert!(
+            create_module("Look", &project).expect_err("it exists").to_string().ends_with("exists already")
+        );
     }
 }

@@ -5,6 +5,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use crate::error::{Error, ErrorKind};
+use crate::packages::{is_locked, package_folder};
 
 /// The files of a project with their texts; double braces mark placeholders.
 const FILES: [(&str, &str); 25] = [
@@ -39,9 +40,10 @@ const FILES: [(&str, &str); 25] = [
 const CRATES: [&str; 5] = ["monas", "monas-cli", "narukom", "narukom-build", "yase"];
 
 /// Names of the project's packages, and names with a meaning to Cargo or Rust.
-pub(crate) const RESERVED_NAMES: [&str; 11] = [
+pub(crate) const RESERVED_NAMES: [&str; 12] = [
     "activities",
     "alloc",
+    "aseme",
     "core",
     "functionalities",
     "messages",
@@ -52,6 +54,9 @@ pub(crate) const RESERVED_NAMES: [&str; 11] = [
     "test",
     "yase",
 ];
+
+/// Folders of Cargo's target folder, whose names Cargo refuses for programs.
+const TARGET_FOLDERS: [&str; 4] = ["build", "deps", "examples", "incremental"];
 
 /// Creates a project in a new or empty folder, whose name becomes that of the project. `monas` says
 /// where the project finds the crates of Monas: a checkout, the address of a git repository, or a
@@ -70,6 +75,10 @@ pub fn create_project(folder: &Path, monas: Option<&str>) -> Result<Vec<PathBuf>
     }
     let (dependencies, checkout) =
         dependencies(monas).map_err(|message| Error::new(ErrorKind::Argument, message))?;
+    if checkout.as_ref().is_some_and(|checkout| is_used(&name, checkout)) {
+        let message = format!("`{name}` is a crate that Monas uses: use for example `team-{name}`");
+        return Err(Error::new(ErrorKind::Argument, message));
+    }
     let topic = name.replace('-', "_");
     let fill = |text: &str| {
         let text = text.replace("{{name}}", &name).replace("{{topic}}", &topic);
@@ -105,10 +114,18 @@ fn check(name: &str) -> Result<(), String> {
         ));
     }
     let module = name.replace('-', "_");
-    match RESERVED_NAMES.contains(&name) || aseme_codegen::generate::identifier(&[&module]) != module {
+    let is_reserved = RESERVED_NAMES.contains(&name) || TARGET_FOLDERS.contains(&name);
+    match is_reserved || aseme_codegen::generate::identifier(&[&module]) != module {
         true => Err(format!("`{name}` is reserved by Rust or Monas: use for example `team-{name}`")),
         false => Ok(()),
     }
+}
+
+/// Whether the name is that of a crate of Monas, or of one that these use. Cargo does not lock
+/// two packages of one name, or cannot tell them apart.
+fn is_used(name: &str, checkout: &Path) -> bool {
+    is_locked(&checkout.join("Cargo.lock"), name)
+        || package_folder(checkout, name).is_some_and(|folder| !folder.starts_with(checkout.join("examples")))
 }
 
 /// The dependency lines of the crates of Monas, and the folder of its checkout if it is local.
@@ -167,6 +184,17 @@ mod tests {
         }
         for name in ["", "My-Team", "2-teams", "a b", "../a", "std", "monas", "fn", "messages"] {
             assert!(check(name).is_err(), "{name}");
+        }
+    }
+
+    #[test]
+    fn names_that_cargo_cannot_build_are_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        for name in ["build", "deps", "examples", "incremental", "aseme", "monas-core", "serde"] {
+            let refused = create_project(&folder.path().join(name), None).unwrap_err();
+            assert_eq!(refused.kind(), ErrorKind::Argument, "{name}");
+            assert!(refused.to_string().contains(&format!("`team-{name}`")), "{refused}");
+            assert!(!folder.path().join(name).exists(), "{name}");
         }
     }
 
