@@ -49,6 +49,10 @@ pub(crate) fn project_for(name: &str, here: &Path) -> Result<PathBuf, Error> {
         );
         return Err(Error::new(ErrorKind::Argument, message));
     }
+    if IMPORTED.contains(&name) || NO_MODULES.contains(&name) {
+        let message = format!("`{name}` is reserved by Rust or Monas: use for example `My{name}`");
+        return Err(Error::new(ErrorKind::Argument, message));
+    }
     project_root(here).ok_or_else(|| {
         let diagnostic = Diagnostic::error("E0927", 0..0, "this folder is not in a Monas project")
             .with_hint("`monas new my-team` creates one");
@@ -65,10 +69,15 @@ fn qualified(name: &str) -> String {
     }
 }
 
+/// Names that the file of an activity imports from Monas or Rust.
+const IMPORTED: [&str; 7] = ["Activity", "Blackboard", "BoxError", "Ok", "Parameters", "Progress", "Result"];
+
+/// Names whose files are no modules of the project's crate: those of Cargo, and those of paths.
+const NO_MODULES: [&str; 7] = ["Build", "Crate", "Extern", "Lib", "Main", "Self", "Super"];
+
 fn is_type(name: &str) -> bool {
     name.starts_with(|first: char| first.is_ascii_uppercase())
         && name.chars().all(|c| c.is_ascii_alphanumeric())
-        && name != "Self"
 }
 
 pub(crate) fn snake_case(name: &str) -> String {
@@ -101,12 +110,19 @@ mod tests {
         ] {
             assert_eq!(snake_case(name), expected);
         }
-        assert!(
-            is_type("Vision")
-                && !is_type("vision")
-                && !is_type("Track Ball")
-                && !is_type("")
-                && !is_type("Self")
-        );
+        assert!(is_type("Vision") && !is_type("vision") && !is_type("Track Ball") && !is_type(""));
+    }
+
+    #[test]
+    fn names_that_the_file_cannot_have_are_refused() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let project = folder.path().join("my-team");
+        crate::create_project(&project, None).expect("a project");
+        for name in ["Activity", "Blackboard", "Result", "Crate", "Main", "Self"] {
+            let refused = create_activity(name, &project).expect_err("it is reserved").to_string();
+            assert!(refused.contains("is reserved by Rust or Monas"), "{refused}");
+        }
+        assert!(!project.join("activities/main.rs").exists());
+        create_activity("Match", &project).expect("modules can have raw identifiers");
     }
 }
