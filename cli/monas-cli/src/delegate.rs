@@ -3,10 +3,12 @@
 
 use std::env;
 use std::ffi::OsString;
+use std::io;
 use std::path::Path;
 use std::process::Command;
 
 use monas_project::{Project, project_program};
+use monas_terminal::Exit;
 
 /// Commands that need no activities and are executed directly.
 const BUILT_IN_COMMANDS: [&str; 9] =
@@ -44,16 +46,25 @@ fn command_word(arguments: &[OsString]) -> Option<String> {
     None
 }
 
-/// Runs the project's own program with the arguments of this process. Returns if there is none.
-pub(crate) fn delegate() {
+/// Runs the project's own program with the arguments of this process. Returns if there is none, or
+/// if it does not start: then with the exit of this process if the command needs the activities of
+/// the project.
+pub(crate) fn delegate() -> Option<Exit> {
     let arguments: Vec<OsString> = env::args_os().skip(1).collect();
-    let (Ok(here), Ok(program)) = (env::current_dir(), env::current_exe()) else { return };
-    if let Some(command) = project_command(&arguments, &here, &program) {
-        if command_word(&arguments).is_some_and(|word| word == "generate") {
-            link_again(&here);
-        }
-        exec_program(command);
+    let (here, program) = (env::current_dir().ok()?, env::current_exe().ok()?);
+    let command = project_command(&arguments, &here, &program)?;
+    let generates = command_word(&arguments).is_some_and(|word| word == "generate");
+    if generates {
+        link_again(&here);
     }
+    let error = exec_program(command);
+    if generates {
+        // Without the activities of the project, each of them would get a skeleton.
+        tracing::error!("cannot start this project's program, nothing is generated: cargo: {error}");
+        return Some(Exit::Failure);
+    }
+    tracing::warn!("cannot start this project's program, its activities are unknown: cargo: {error}");
+    None
 }
 
 /// Removes deleted generated crates from the project's manifests: with them Cargo would not build
@@ -66,21 +77,18 @@ fn link_again(here: &Path) {
     }
 }
 
-/// Replaces this process, so that signals reach the program.
+/// Replaces this process, so that signals reach the program. Returns why that has failed.
 #[cfg(unix)]
-fn exec_program(mut command: Command) {
+fn exec_program(mut command: Command) -> io::Error {
     use std::os::unix::process::CommandExt;
-    let error = command.exec();
-    tracing::warn!("cannot start this project's program, its activities are unknown: cargo: {error}");
+    command.exec()
 }
 
 #[cfg(not(unix))]
-fn exec_program(mut command: Command) {
+fn exec_program(mut command: Command) -> io::Error {
     match command.status() {
         Ok(status) => std::process::exit(status.code().unwrap_or(1)),
-        Err(error) => {
-            tracing::warn!("cannot start this project's program, its activities are unknown: cargo: {error}");
-        }
+        Err(error) => error,
     }
 }
 

@@ -21,7 +21,10 @@ pub(crate) fn main() -> Exit {
     CompleteEnv::with_factory(Arguments::command).complete();
     let bars = MultiProgress::new();
     let log = ProcessLog::begin(&bars);
-    delegate::delegate();
+    if let Some(exit) = delegate::delegate() {
+        log.iter().for_each(|log| log.end());
+        return exit;
+    }
     #[cfg(target_os = "linux")]
     let _crashes = CrashReport::install();
     #[cfg(target_os = "linux")]

@@ -43,6 +43,19 @@ fn a_project_has_its_folders_and_manifests_that_cargo_reads() {
     assert_eq!(names, ["activities", "functionalities", "messages", "my-team"]);
 }
 
+/// This program does not have the activities of the project, and would write skeletons of them.
+#[test]
+fn nothing_is_generated_where_the_program_of_the_project_does_not_start() {
+    let folder = project();
+    let team = folder.path().join("my-team");
+    let mut generate = command(&["-q", "generate", "models/greeter.srm"]);
+    let answer: Answer =
+        generate.current_dir(&team).env("PATH", "/nowhere").output().expect("the command starts").into();
+    assert_eq!(answer.code, Some(1), "{}", answer.err);
+    assert!(answer.err.contains("nothing is generated: cargo: "), "{}", answer.err);
+    assert!(!team.join("statecharts/greeter").exists());
+}
+
 #[test]
 fn the_present_folder_becomes_a_project_of_its_name() {
     let folder = tempfile::tempdir().expect("a folder");
