@@ -44,11 +44,13 @@ pub(crate) fn table<'a>(manifest: &'a str, header: &str) -> Option<&'a str> {
     Some(&rest[..rest.find("\n[").map_or(rest.len(), |end| end + 1)])
 }
 
-/// The value of a key in a table, without quotes.
+/// The value of a key in a table, without quotes and without a comment behind it.
 pub(crate) fn value<'a>(table: &'a str, key: &str) -> Option<&'a str> {
     table.lines().find_map(|line| {
         let rest = line.strip_prefix(key)?.trim_start();
-        Some(rest.strip_prefix('=')?.trim().trim_matches('"'))
+        let text = rest.strip_prefix('=')?.trim();
+        let quoted = text.strip_prefix('"').and_then(|text| text.split_once('"'));
+        Some(quoted.map_or_else(|| text.split('#').next().unwrap_or(text).trim_end(), |(value, _)| value))
     })
 }
 
@@ -101,5 +103,7 @@ mod tests {
         let manifest = "[a]\nteam = \"x\"\n\n[b]\nteam = \"y\"\n";
         assert_eq!(table(manifest, "[b]").and_then(|table| value(table, "team")), Some("y"));
         assert_eq!(table(manifest, "[a]").and_then(|table| value(table, "teams")), None);
+        assert_eq!(value("team = \"z#1\" # the package", "team"), Some("z#1"));
+        assert_eq!(value("publish = false # never", "publish"), Some("false"));
     }
 }
