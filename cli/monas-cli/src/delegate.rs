@@ -67,11 +67,11 @@ pub(crate) fn delegate() -> Option<Exit> {
     None
 }
 
-/// Removes deleted generated crates from the project's manifests: with them Cargo would not build
-/// the program that does this otherwise.
+/// Removes generated crates that are deleted or incomplete from the project's manifests: with them
+/// Cargo would not build the program that does this otherwise, and that generates them again.
 fn link_again(here: &Path) {
     let Some((folder, _)) = project_program(here) else { return };
-    let linked = Project::around(&folder.join("Cargo.toml")).and_then(|project| project.link());
+    let linked = Project::around(&folder.join("Cargo.toml")).and_then(|project| project.link_complete());
     if let Err(error) = linked {
         tracing::warn!("the generated crates of this project cannot be linked: {error}");
     }

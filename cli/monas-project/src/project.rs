@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use aseme_codegen::generate::SKELETONS;
 use yase::Diagnostic;
 
 use crate::error::Error;
@@ -170,7 +171,23 @@ impl Project {
     /// # Errors
     /// A file cannot be read or written.
     pub fn link(&self) -> Result<Vec<PathBuf>, Error> {
-        let crates = self.generated()?;
+        self.link_crates(&self.generated()?)
+    }
+
+    /// Links the generated crates that Cargo can build: those whose skeletons are there, and that
+    /// use no other. A skeleton that was moved to a crate of activities is declared until its model
+    /// is generated again, by a program that would not be built with it.
+    ///
+    /// # Errors
+    /// A file cannot be read or written.
+    pub fn link_complete(&self) -> Result<Vec<PathBuf>, Error> {
+        let (incomplete, mut crates): (Vec<_>, Vec<_>) =
+            self.generated()?.into_iter().partition(|name| lacks_skeleton(&self.statecharts().join(name)));
+        crates.retain(|name| !incomplete.iter().any(|other| self.depends_on(name, other)));
+        self.link_crates(&crates)
+    }
+
+    fn link_crates(&self, crates: &[String]) -> Result<Vec<PathBuf>, Error> {
         let is_shared = table(&self.manifest, "[workspace.dependencies]").is_some();
         let way_up = self.team.strip_prefix(&self.root).map_or(0, |path| path.components().count());
         let path = |name: &str, up: usize| {
@@ -181,7 +198,8 @@ impl Project {
             .map(|name| if is_shared { format!("{name}.workspace = true") } else { path(name, way_up) })
             .collect();
         let mut changed = Vec::new();
-        let lines: Vec<String> = crates.iter().map(|name| path(name, 0)).collect();
+        // Generated crates name each other there, whether the program links them or not.
+        let lines: Vec<String> = self.generated()?.iter().map(|name| path(name, 0)).collect();
         let text = |manifest: &str| {
             let manifest = with_members(manifest, STATECHART_MEMBERS);
             if is_shared { with_block(&manifest, "[workspace.dependencies]", &lines) } else { manifest }
@@ -193,7 +211,7 @@ impl Project {
             with_block(manifest, "[dependencies]", &lines)
         };
         changed.extend(edited(&self.team.join("Cargo.toml"), text)?);
-        changed.extend(edited(&self.team.join(LINK_FILE), |_| links(&crates))?);
+        changed.extend(edited(&self.team.join(LINK_FILE), |_| links(crates))?);
         let main = ["src/main.rs", "src/lib.rs"].map(|file| self.team.join(file));
         if let Some(main) = main.iter().find(|file| file.is_file()) {
             changed.extend(edited(main, with_module)?);
@@ -223,6 +241,14 @@ fn missing_setting(key: &str) -> String {
         "publish" => "publish = false\n".into(),
         _ => String::new(),
     }
+}
+
+/// Whether a generated crate declares a skeleton whose file is gone.
+fn lacks_skeleton(folder: &Path) -> bool {
+    let skeletons = folder.join(SKELETONS);
+    let declared = fs::read_to_string(skeletons.with_extension("rs")).unwrap_or_default();
+    let mut names = declared.lines().filter_map(|line| line.strip_prefix("mod ")?.strip_suffix(';'));
+    names.any(|name| !skeletons.join(format!("{}.rs", name.trim_start_matches("r#"))).is_file())
 }
 
 /// The dependency on a crate as the manifest has it, which may be optional; `line` if it has none.
@@ -299,6 +325,35 @@ mod tests {
         assert!(!read("Cargo.toml").contains("scout") && !read(LINK_FILE).contains("scout"));
         assert!(read("Cargo.toml").contains("goalie") && read(LINK_FILE).contains("goalie"));
         assert!(project().link().expect("it is linked").is_empty());
+    }
+
+    #[test]
+    fn crates_without_their_skeletons_are_linked_when_they_are_complete() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let write = |file: &str, text: &str| {
+            let path = folder.path().join(file);
+            fs::create_dir_all(path.parent().expect("it has a folder")).expect("folders");
+            fs::write(path, text).expect("the folder takes files");
+        };
+        write("Cargo.toml", "[workspace]\n\n[workspace.dependencies]\n\n[package]\n\n[dependencies]\n");
+        write("src/main.rs", "fn main() {}\n");
+        for (name, dependency) in [("goalie", ""), ("scout", ""), ("shooter", "scout.workspace = true\n")] {
+            let manifest = format!("[package]\n\n[dependencies]\n{dependency}");
+            write(&format!("statecharts/{name}/Cargo.toml"), &manifest);
+        }
+        write("statecharts/scout/src/activities.rs", "//! Activities.\n\nmod r#match;\nmod scan;\n");
+        write("statecharts/scout/src/activities/match.rs", "");
+        let linked = || {
+            let project = Project::around(&folder.path().join("Cargo.toml")).expect("a project");
+            project.link_complete().expect("it is linked");
+            let read = |file: &str| fs::read_to_string(folder.path().join(file)).expect("a file");
+            assert!(read("Cargo.toml").contains("scout = { path = "), "the shooter names it");
+            let links = read(LINK_FILE);
+            ["goalie", "scout", "shooter"].map(|name| links.contains(&format!("use {name} as _;")))
+        };
+        assert_eq!(linked(), [true, false, false]);
+        write("statecharts/scout/src/activities/scan.rs", "");
+        assert_eq!(linked(), [true, true, true]);
     }
 
     #[test]
