@@ -94,7 +94,7 @@ impl ActivityFiles {
     /// Imports an activity, or uses its full path if another has the same Rust name.
     fn known(&mut self, name: &str, activity: &RustActivity) {
         let (module, rust) = activity.path.rsplit_once("::").unwrap_or(("", &activity.path));
-        let is_taken = self.called.values().any(|other| other.path == rust);
+        let is_taken = USED_NAMES.contains(&rust) || self.called.values().any(|other| other.path == rust);
         let path = if is_taken || module.is_empty() { activity.path.clone() } else { rust.to_owned() };
         if path == rust && !module.is_empty() {
             self.imported.entry(module.to_owned()).or_default().push(rust.to_owned());
@@ -192,7 +192,14 @@ fn declared(topics: &BTreeSet<&str>) -> String {
     )
 }
 
-/// `UpperCamelCase`.
+/// The types that the module of the activities uses itself.
+const USED_NAMES: [&str; 3] = ["Instance", "State", "Vec"];
+
+/// The types and constructors that a skeleton uses itself.
+const SKELETON_NAMES: [&str; 7] =
+    ["Activity", "Blackboard", "BoxError", "Ok", "Progress", "Result", "Topics"];
+
+/// `UpperCamelCase`, with an underscore behind a name that the generated code uses.
 fn camel(name: &str) -> String {
     let capital = |word: &str| {
         let mut letters = word.chars();
@@ -200,7 +207,11 @@ fn camel(name: &str) -> String {
             .next()
             .map_or_else(String::new, |first| first.to_ascii_uppercase().to_string() + letters.as_str())
     };
-    identifier(&[name]).split('_').map(capital).collect()
+    let text: String = identifier(&[name]).split('_').map(capital).collect();
+    match USED_NAMES.contains(&text.as_str()) || SKELETON_NAMES.contains(&text.as_str()) {
+        true => format!("{text}_"),
+        false => text,
+    }
 }
 
 /// `snake_case`.

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use aseme_codegen::generate::{CrateFiles, RustBindings, generate};
+use aseme_codegen::generate::{CrateFiles, RustActivity, RustBindings, generate};
 use yase::{Source, Statechart};
 
 use crate::words::soccer;
@@ -55,8 +55,7 @@ walk : priority = 2, entry = GameState.player_state = PLAYING, exit = StartTimeo
 #[test]
 fn a_crate_of_monas_has_its_activities_and_skeletons_for_those_that_are_not_there() {
     let words = RustBindings { registers: true, runtime: "monas::generated".into(), ..soccer() };
-    let activity =
-        |path: &str, is_function| aseme_codegen::generate::RustActivity { path: path.into(), is_function };
+    let activity = |path: &str, is_function| RustActivity { path: path.into(), is_function };
     let activities = [("look", activity("team::look", true)), ("kick", activity("team::Kick", false))];
     let activities = activities.map(|(name, activity)| (name.to_owned(), activity));
     let about =
@@ -95,6 +94,26 @@ fn skeletons_called_like_keywords_are_in_files_that_rust_finds() {
         assert!(modules.contains(&format!("mod {module};\n")), "{modules}");
         assert!(files.contains_key(&format!("src/activities/{file}.rs")), "{:?}", files.keys());
     }
+}
+
+/// A skeleton imports `Activity`, and its function returns a `Result`.
+#[test]
+fn activities_called_like_types_of_the_generated_code_have_other_names_in_rust() {
+    let state = RustActivity { path: "activities::state::State".into(), is_function: false };
+    let words = RustBindings {
+        registers: true,
+        runtime: "monas::generated".into(),
+        activities: [("State".to_owned(), state)].into(),
+        ..soccer()
+    };
+    let files =
+        generate(&chart("r.srm", "r = Activity . Result . State"), &words).expect("it can be written");
+    let skeleton = &files["src/activities/activity_.rs"];
+    assert!(skeleton.contains("impl Activity for Activity_ {"), "{skeleton}");
+    assert!(skeleton.contains("monas::activity!(Activity_ as \"Activity\");"), "{skeleton}");
+    let modules = &files["src/activities.rs"];
+    assert!(modules.contains("pub use result_::Result_;"), "{modules}");
+    assert!(modules.contains("Instance::of::<::activities::state::State>(State::State)"), "{modules}");
 }
 
 /// A project's messages are in a crate that is called like a module of the generated crate.
