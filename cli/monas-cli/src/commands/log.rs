@@ -15,7 +15,9 @@ use monas_tape::{Recording, TapeOverview};
 use prost::Message;
 
 #[cfg(unix)]
-use crate::remote::{RunSelector, WatchLimits, connection, failure, hosts, watch};
+use crate::commands::run::RECORDING;
+#[cfg(unix)]
+use crate::remote::{RunSelector, WatchLimits, connection, failure, hosts, request, unexpected_reply, watch};
 use line::LogLine;
 use monas_terminal::{CommandFailure, CommandOutput, Exit, Format, FormatArgument, failed};
 
@@ -115,7 +117,7 @@ fn of_tape(
     let hosts = overview.channels.iter().map(|counted| counted.channel.host.as_str());
     arguments.check_robots("tape", &hosts.collect::<Vec<_>>())?;
     if !arguments.agents.is_empty() {
-        arguments.check_agents(&agents(&recording, &overview, format)?)?;
+        arguments.check_agents("tape", &agents(&recording, &overview, format)?)?;
     }
     let mut left = arguments.count.unwrap_or(u64::MAX);
     for message in recording.messages().map_err(failed(format))? {
@@ -170,6 +172,9 @@ fn of_run(arguments: &LogArguments, console: &mut CommandOutput<'_>) -> Result<E
         let run = connection::client(&choice)?.describe().map_err(failure(format))?;
         arguments.check_robots("run", &run.hosts.iter().map(String::as_str).collect::<Vec<_>>())?;
     }
+    if !arguments.agents.is_empty() {
+        arguments.check_agents("run", &agents_of_run(arguments)?)?;
+    }
     let limits = WatchLimits { count: None, length: arguments.length };
     let mut left = arguments.count.unwrap_or(u64::MAX);
     watch(TOPIC, true, &limits, &choice, console, |seen, console| {
@@ -183,6 +188,16 @@ fn of_run(arguments: &LogArguments, console: &mut CommandOutput<'_>) -> Result<E
         }
         Ok(left > 0)
     })
+}
+
+/// The names of the agents of a run, of all its robots, and of what else writes lines.
+#[cfg(unix)]
+fn agents_of_run(arguments: &LogArguments) -> Result<BTreeSet<String>, CommandFailure> {
+    let run = RunSelector::of(arguments.run.clone(), None, arguments.format);
+    let reply = request(records::Inquiry { agents: true, ..records::Inquiry::default() }, &run)?;
+    let agents = reply.agents.ok_or_else(|| unexpected_reply(&run))?.agents;
+    let others = std::iter::once(RECORDING.to_owned());
+    Ok(agents.into_iter().map(|agent| agent.name).chain(others).collect())
 }
 
 #[cfg(not(unix))]
@@ -209,11 +224,11 @@ impl LogArguments {
     }
 
     /// Refuses agents that do not exist.
-    fn check_agents(&self, agents: &BTreeSet<String>) -> Result<(), CommandFailure> {
+    fn check_agents(&self, source: &str, agents: &BTreeSet<String>) -> Result<(), CommandFailure> {
         match self.agents.iter().find(|agent| !agents.contains(*agent)) {
             Some(unknown) => {
                 let known = agents.iter().map(String::as_str);
-                Err(CommandFailure::unknown_name("tape", "agent", unknown, known))
+                Err(CommandFailure::unknown_name(source, "agent", unknown, known))
             }
             None => Ok(()),
         }

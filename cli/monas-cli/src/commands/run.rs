@@ -23,6 +23,9 @@ mod scoreboard;
 #[cfg(feature = "soccer")]
 mod summary;
 
+#[cfg(unix)]
+pub(super) use outputs::RECORDING;
+
 use std::path::PathBuf;
 use std::time::Duration;
 

@@ -6,6 +6,8 @@ use std::path::Path;
 use serde_json::Value;
 
 use crate::kit::{Answer, command, monas, root};
+#[cfg(unix)]
+use crate::running::{Running, ask};
 
 /// Plays a second with these log settings, in a folder.
 fn run(folder: &Path, settings: &str) -> Answer {
@@ -120,4 +122,24 @@ fn configuration_errors_are_reported_before_the_run() {
     let answer = run(folder.path(), "<MessageLogFile>no/folder/a.log</MessageLogFile>");
     assert_eq!(answer.code, Some(1));
     assert!(answer.err.contains("logger.xml: "), "{}", answer.err);
+}
+
+#[test]
+#[cfg(unix)]
+fn agents_that_a_run_lacks_are_refused() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let arguments = ["run", "config/match.xml", "--realtime", "--control", "game"];
+    let run = Running::start(folder.path(), &arguments, "control socket: ");
+    let ask = |more: &[&str]| ask(folder.path(), &[&["log", "--for", "10ms"], more].concat());
+    let unknown = ask(&["--agent", "Goalie", "--agent", "Gaolie"]);
+    assert_eq!((unknown.code, unknown.out.as_str()), (Some(2), ""));
+    assert_eq!(unknown.err, "error: the run has no agent `Gaolie`; did you mean `Goalie`?\n");
+    let unknown = ask(&["--robot", "blue-1", "--agent", "Referee"]);
+    let known = "error: the run has no agent `Referee`; it has Attacker, Goalie, recording\n";
+    assert_eq!((unknown.code, unknown.err.as_str()), (Some(2), known));
+    for known in [&["--agent", "Goalie", "--robot", "blue-2"][..], &["--agent", "recording"]] {
+        let answer = ask(known);
+        assert_eq!((answer.code, answer.err.as_str()), (Some(0), ""), "{known:?}");
+    }
+    assert_eq!(run.interrupt().code, Some(130));
 }

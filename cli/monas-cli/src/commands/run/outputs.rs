@@ -16,8 +16,8 @@ use super::{RunArguments, control};
 use crate::crash_report;
 use crate::input::robot_file;
 
-/// The name under which alarms are published.
-const PUBLISHER: &str = "recording";
+/// The name under which alarms of the recording are published.
+pub(crate) const RECORDING: &str = "recording";
 
 /// Opens the log and the recording of a run, after everything that could refuse the run was
 /// checked. Existing files stay, unless the arguments say otherwise.
@@ -131,8 +131,8 @@ impl RecordingAlarm {
         self.failure = failure;
         for hub in self.run.hubs() {
             // A hub may lack the topic; the process's log has the line.
-            let Ok(mut publisher) = hub.publisher(LOG, PUBLISHER) else { continue };
-            let mut line = Log { message: message.clone(), name: PUBLISHER.into(), ..Log::default() };
+            let Ok(mut publisher) = hub.publisher(LOG, RECORDING) else { continue };
+            let mut line = Log { message: message.clone(), name: RECORDING.into(), ..Log::default() };
             line.set_level(level);
             publisher.publish(line, now);
         }
