@@ -41,11 +41,12 @@ pub fn write_new(path: impl AsRef<Path>, content: impl AsRef<[u8]>) -> io::Resul
 /// A file that replaces another one when it is complete.
 ///
 /// The content is written to a draft in the same folder, passed to the disk, and renamed by
-/// [`commit`](AtomicFile::commit). Dropped before, the draft is deleted and the old file stays. The
-/// new file has the mode of the old one and, where the system permits it, its owner and group; a
-/// symbolic link stays a link, and the file that it points to is replaced. Other hard links keep
-/// the old content. Terminals, pipes and devices have no content to protect and are written
-/// directly.
+/// [`commit`](AtomicFile::commit). Dropped before, the draft is deleted and the old file stays. On
+/// Linux the draft has no name before it is complete, where the file system supports it, so that a
+/// killed process leaves nothing behind. The new file has the mode of the old one and, where the
+/// system permits it, its owner and group; a symbolic link stays a link, and the file that it
+/// points to is replaced. Other hard links keep the old content. Terminals, pipes and devices have
+/// no content to protect and are written directly.
 #[derive(Debug)]
 pub struct AtomicFile {
     output: BufWriter<File>,
@@ -56,7 +57,8 @@ pub struct AtomicFile {
 /// A file that is deleted unless it is renamed.
 #[derive(Debug)]
 struct Draft {
-    path: PathBuf,
+    /// `None` while the file has no name.
+    path: Option<PathBuf>,
     target: PathBuf,
 }
 
@@ -97,9 +99,16 @@ impl AtomicFile {
     /// The content cannot be written; then the old file is unchanged.
     pub fn commit(mut self) -> io::Result<()> {
         self.output.flush()?;
-        let Some(draft) = self.draft.take() else { return Ok(()) };
-        self.output.get_ref().sync_all()?;
-        fs::rename(&draft.path, &draft.target)?;
+        let Some(mut draft) = self.draft.take() else { return Ok(()) };
+        let file = self.output.get_ref();
+        file.sync_all()?;
+        let path = match draft.path.take() {
+            Some(path) => path,
+            None => unnamed::name(file, &draft.target)?,
+        };
+        // From here on the draft is deleted unless it is renamed.
+        let path = draft.path.insert(path);
+        fs::rename(path, &draft.target)?;
         sync_folder(&draft.target)
     }
 }
@@ -117,7 +126,7 @@ impl Write for AtomicFile {
 impl Drop for Draft {
     fn drop(&mut self) {
         // After success it has been renamed.
-        let _ = fs::remove_file(&self.path);
+        let _ = self.path.take().map(fs::remove_file);
     }
 }
 
@@ -137,8 +146,18 @@ fn folder_of(path: &Path) -> &Path {
     path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
-/// Creates a new file beside `target`, with a name that no other draft has.
-fn draft(target: &Path) -> io::Result<(File, PathBuf)> {
+/// Creates a new file in the folder of `target`: without a name if possible, otherwise with one
+/// that no other draft has.
+fn draft(target: &Path) -> io::Result<(File, Option<PathBuf>)> {
+    if let Some(file) = unnamed::create(folder_of(target)) {
+        return Ok((file, None));
+    }
+    let open = |path: &Path| OpenOptions::new().write(true).create_new(true).open(path);
+    named(target, open).map(|(file, path)| (file, Some(path)))
+}
+
+/// Creates something beside `target` by `create`, with a name that no other draft has.
+fn named<T>(target: &Path, create: impl Fn(&Path) -> io::Result<T>) -> io::Result<(T, PathBuf)> {
     let name = target.file_name().ok_or(io::ErrorKind::InvalidInput)?;
     loop {
         let number = DRAFTS.fetch_add(1, Ordering::Relaxed);
@@ -146,12 +165,56 @@ fn draft(target: &Path) -> io::Result<(File, PathBuf)> {
         hidden.push(name);
         hidden.push(format!(".{}-{number}.part", std::process::id()));
         let path = folder_of(target).join(hidden);
-        match OpenOptions::new().write(true).create_new(true).open(&path) {
-            Ok(file) => return Ok((file, path)),
+        match create(&path) {
+            Ok(created) => return Ok((created, path)),
             // Left by a killed process that had this number.
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
             Err(error) => return Err(error),
         }
+    }
+}
+
+/// Files without a name, which the system deletes with the process.
+#[cfg(target_os = "linux")]
+mod unnamed {
+    use std::fs::File;
+    use std::io;
+    use std::os::fd::AsRawFd;
+    use std::path::{Path, PathBuf};
+
+    use rustix::fs::{AtFlags, CWD, Mode, OFlags};
+
+    /// A file in a folder; `None` if the file system has no such files, or they could not be named.
+    pub(super) fn create(folder: &Path) -> Option<File> {
+        let flags = OFlags::WRONLY | OFlags::TMPFILE | OFlags::CLOEXEC;
+        let file = File::from(rustix::fs::open(folder, flags, Mode::from_raw_mode(0o666)).ok()?);
+        link(&file).symlink_metadata().is_ok().then_some(file)
+    }
+
+    /// Gives the file a name beside `target`.
+    pub(super) fn name(file: &File, target: &Path) -> io::Result<PathBuf> {
+        let give = |path: &Path| Ok(rustix::fs::linkat(CWD, link(file), CWD, path, AtFlags::SYMLINK_FOLLOW)?);
+        Ok(super::named(target, give)?.1)
+    }
+
+    /// The link to the file by which it can be named without privileges.
+    fn link(file: &File) -> PathBuf {
+        PathBuf::from(format!("/proc/self/fd/{}", file.as_raw_fd()))
+    }
+}
+
+#[cfg(not(target_os = "linux"))]
+mod unnamed {
+    use std::fs::File;
+    use std::io;
+    use std::path::{Path, PathBuf};
+
+    pub(super) fn create(_: &Path) -> Option<File> {
+        None
+    }
+
+    pub(super) fn name(_: &File, _: &Path) -> io::Result<PathBuf> {
+        Err(io::ErrorKind::Unsupported.into())
     }
 }
 
@@ -218,6 +281,27 @@ mod tests {
         assert_eq!((fs::read_to_string(&path).unwrap().as_str(), names(folder.path()).len()), ("old", 1));
         write(&path, "new").unwrap();
         assert_eq!((fs::read_to_string(&path).unwrap().as_str(), names(folder.path()).len()), ("new", 1));
+    }
+
+    #[test]
+    #[cfg(target_os = "linux")]
+    fn a_killed_process_leaves_no_draft() {
+        let folder = tempfile::tempdir().unwrap();
+        if unnamed::create(folder.path()).is_none() {
+            println!("SKIPPED: this file system has no files without a name");
+            return;
+        }
+        let path = folder.path().join("cut.mcap");
+        fs::write(&path, "old").unwrap();
+        let mut file = AtomicFile::create(&path).unwrap();
+        file.write_all(b"half of the new").unwrap();
+        file.flush().unwrap();
+        // A killed process drops nothing.
+        std::mem::forget(file);
+        assert_eq!(
+            (names(folder.path()), fs::read_to_string(&path).unwrap()),
+            (vec!["cut.mcap".into()], "old".into())
+        );
     }
 
     #[test]
