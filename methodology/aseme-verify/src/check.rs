@@ -34,7 +34,7 @@
 //!     (remove the guard of one transition: it is then taken if no other is)"]);
 //! ```
 
-mod events;
+pub(crate) mod events;
 mod exploration;
 mod freshness;
 mod guards;

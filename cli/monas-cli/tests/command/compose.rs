@@ -60,6 +60,12 @@ fn deadlocking_robots_are_reported() {
     assert!(short.out.ends_with("{\"states\":8,\"finished\":false,\"one_process\":false}\n"), "{short:?}");
     let twice = monas(&["model", "compose", &passer, &passer]);
     assert!(twice.code == Some(2) && twice.err.contains("two robots are named `passer`"), "{twice:?}");
+    let unknown = monas(&["model", "compose", &passer, &receiver, "--event", "whistle"]);
+    assert!(unknown.code == Some(2) && unknown.out.is_empty(), "{unknown:?}");
+    assert!(
+        unknown.err.starts_with("error: no transition waits for the event `whistle`; there are `"),
+        "{unknown:?}"
+    );
 }
 
 #[test]

@@ -200,6 +200,9 @@ fn a_way_to_a_finding_is_written_and_played() {
     assert_eq!(answer.code, Some(0), "{}", answer.err);
     assert!(answer.err.contains("M14") && answer.err.contains("    event kick\n"), "{}", answer.err);
     assert!(answer.out.contains("states explored"), "{}", answer.out);
+    let misspelt = monas(&["model", "check", "--unlinked", &model, "--event", "kick", "--event", "kcik"]);
+    let refusal = "error: no transition waits for the event `kcik`; did you mean `kick`?\n";
+    assert_eq!((misspelt.code, misspelt.err.as_str()), (Some(2), refusal));
     let trace = traces.join("stuck-M14-1.trace").display().to_string();
     let played = monas(&["model", "run", &model, &trace]);
     assert_eq!((played.code, played.err.as_str()), (Some(0), ""));

@@ -4,13 +4,14 @@ mod properties;
 mod sarif;
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
-use aseme_verify::{CheckSettings, check::CheckReport};
+use aseme_verify::{CheckSettings, check::CheckReport, check_external_events};
 use clap::{Args, ValueEnum, ValueHint};
 use monas::config;
 use monas_terminal::{CommandFailure, CommandOutput, Exit, Format, report};
 use serde_json::json;
-use yase::Severity;
+use yase::{Severity, Source};
 
 use super::exploration::{ExplorationArguments, extent};
 use super::{finding, program};
@@ -69,16 +70,23 @@ pub(crate) fn execute(
 ) -> Result<Exit, CommandFailure> {
     let mut settings = CheckSettings::default();
     settings.events.extend(arguments.events.iter().cloned());
+    let models: Vec<_> = arguments.files.iter().map(|path| (path, config::read_file(path))).collect();
+    // Files that cannot be read are reported below.
+    let read: Vec<_> = models.iter().filter_map(|(_, model)| model.as_ref().ok().cloned()).collect();
+    if read.len() == models.len() {
+        check_external_events(&read, &settings).map_err(CommandFailure::Usage)?;
+    }
     settings.pool = arguments.pool;
     let interrupt = arguments.exploration.apply(&mut settings, console)?;
     settings.world = (!arguments.unlinked).then(program::linked).transpose()?;
     settings.recorded = super::coverage::recorded(&arguments.tapes)?;
     let (mut reports, mut judged): (Vec<(&Path, CheckReport)>, Vec<CheckedProperty>) =
         (Vec::new(), Vec::new());
-    for path in &arguments.files {
-        let report = match arguments.properties.as_slice() {
-            [] => checked(path, &settings, arguments.all),
-            files => properties::checked(path, files, &settings, &mut judged),
+    for (path, model) in models {
+        let report = match (model, arguments.properties.as_slice()) {
+            (Err(unread), _) => CheckReport::of_unreadable(*unread),
+            (Ok(model), []) => checked(&model, &settings, arguments.all),
+            (Ok(model), files) => properties::checked(&model, path, files, &settings, &mut judged),
         };
         reports.push((path, report));
     }
@@ -114,11 +122,8 @@ fn verdict(reports: &[(&Path, CheckReport)]) -> Exit {
     }
 }
 
-fn checked(path: &Path, settings: &CheckSettings, all: bool) -> CheckReport {
-    let mut report = match config::read_file(path) {
-        Ok(source) => aseme_verify::check::check(&source, settings),
-        Err(diagnostic) => CheckReport::of_unreadable(*diagnostic),
-    };
+fn checked(model: &Arc<Source>, settings: &CheckSettings, all: bool) -> CheckReport {
+    let mut report = aseme_verify::check::check(model, settings);
     report.findings.retain(|finding| all || finding.diagnostic.severity > Severity::Information);
     report
 }

@@ -7,7 +7,7 @@ use aseme_models::Iac;
 use aseme_models::convert::Model;
 use aseme_models::iac::ChartKind;
 use aseme_verify::composition::{Channels, Composition, compose};
-use aseme_verify::{CheckSettings, protocol::parts_taken};
+use aseme_verify::{CheckSettings, check_external_events, protocol::parts_taken};
 use clap::{Args, ValueHint};
 use monas_terminal::{CommandFailure, CommandOutput, Exit, Format, FormatArgument, counted, report};
 use serde_json::json;
@@ -58,6 +58,8 @@ pub(crate) fn execute(
     let conforms = cast.conforms(format, console)?;
     let mut settings = CheckSettings::default();
     settings.events.extend(arguments.events.iter().cloned());
+    let models: Vec<Arc<Source>> = cast.robots.iter().map(|(_, model)| model.clone()).collect();
+    check_external_events(&models, &settings).map_err(CommandFailure::Usage)?;
     let interrupt = arguments.exploration.apply(&mut settings, console)?;
     settings.world = arguments.linked.then(program::linked).transpose()?;
     let mut channels = Channels::default();

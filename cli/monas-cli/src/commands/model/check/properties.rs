@@ -18,20 +18,17 @@ pub(crate) struct CheckedProperty {
 
 /// Checks the properties of files on a model.
 pub(crate) fn checked(
+    model: &Arc<Source>,
     path: &Path,
     files: &[PathBuf],
     settings: &CheckSettings,
     judged: &mut Vec<CheckedProperty>,
 ) -> CheckReport {
-    let model = match config::read_file(path) {
-        Ok(model) => model,
-        Err(unread) => return CheckReport::of_unreadable(*unread),
-    };
     let mut report = CheckReport::default();
     let mut has_unread = false;
     for file in files {
         match config::read_file(file) {
-            Ok(source) => has_unread |= !add(&model, path, &source, settings, &mut report, judged),
+            Ok(source) => has_unread |= !add(model, path, &source, settings, &mut report, judged),
             Err(unread) => {
                 report.findings.push((*unread).into());
                 has_unread = true;
