@@ -44,6 +44,15 @@ fn a_running_match_is_inspected() {
     let info = ask(&["topic", "info", "soccer/ball", "--host", "blue-2"]);
     assert!(info.out.starts_with("soccer/ball on blue-2: state of monas.soccer.Ball\n"), "{}", info.out);
     assert!(info.out.contains("  bool found\n") && info.out.contains("  double distance\n"), "{}", info.out);
+    let each = ask(&["topic", "info", "sim/*", "--host", "field"]);
+    let of_topics =
+        ["sim/incident on field: ", "  string text\n", "sim/referee on field: ", "  uint32 number\n"];
+    let positions = of_topics.map(|part| each.out.find(part));
+    assert!(positions.iter().all(Option::is_some) && positions.is_sorted(), "{}", each.out);
+    let each = objects(&ask(&["topic", "info", "sim/*", "--host", "field", "--format", "json"]).out);
+    let fields =
+        |topic| each.iter().find(|entry| entry["topic"] == topic).map(|entry| &entry["fields"][0]["name"]);
+    assert_eq!((fields("sim/incident"), fields("sim/referee")), (Some(&"text".into()), Some(&"kind".into())));
 
     let echo =
         ask(&["topic", "echo", "body/sensors", "--host", "blue-2", "--count", "3", "--format", "json"]);

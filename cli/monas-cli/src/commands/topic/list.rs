@@ -2,7 +2,7 @@
 
 use monas_link::control::messages::TopicEntry;
 use monas_terminal::{CommandFailure, CommandOutput, Exit, Format, seconds, table};
-use prost_reflect::{Cardinality, FieldDescriptor};
+use prost_reflect::{Cardinality, FieldDescriptor, MessageDescriptor};
 use serde_json::{Value, json};
 
 use super::schemas::Schemas;
@@ -66,19 +66,43 @@ pub(crate) fn info(
     console: &mut CommandOutput<'_>,
 ) -> Result<Exit, CommandFailure> {
     let format = choice.format.value;
-    let entries = entries(topic, choice)?;
+    let mut entries = entries(topic, choice)?;
+    // A pattern may match several topics; each has its fields after its hosts.
+    entries.sort_by(|one, other| one.path.cmp(&other.path));
     let mut schemas = Schemas::new(connection::socket(choice)?, format);
-    let message = schemas.of(topic)?;
-    if format == Format::Json {
-        let fields: Vec<Value> = message.fields().map(|field| field_object(&field)).collect();
-        for entry in &entries {
-            let mut object = object(entry);
-            object["fields"] = fields.clone().into();
-            writeln!(console.out, "{object}")?;
+    for topic in entries.chunk_by(|one, other| one.path == other.path) {
+        let Some(first) = topic.first() else { continue };
+        let message = schemas.of(&first.path)?;
+        match format {
+            Format::Json => info_objects(topic, &message, console)?,
+            Format::Text => describe(topic, &message, console)?,
         }
-        return Ok(Exit::Success);
     }
-    for entry in &entries {
+    Ok(Exit::Success)
+}
+
+/// One object per host that has the topic.
+fn info_objects(
+    topic: &[TopicEntry],
+    message: &MessageDescriptor,
+    console: &mut CommandOutput<'_>,
+) -> Result<(), CommandFailure> {
+    let fields: Vec<Value> = message.fields().map(|field| field_object(&field)).collect();
+    for entry in topic {
+        let mut object = object(entry);
+        object["fields"] = fields.clone().into();
+        writeln!(console.out, "{object}")?;
+    }
+    Ok(())
+}
+
+/// The topic on each host, and the fields of its messages.
+fn describe(
+    topic: &[TopicEntry],
+    message: &MessageDescriptor,
+    console: &mut CommandOutput<'_>,
+) -> Result<(), CommandFailure> {
+    for entry in topic {
         writeln!(console.out, "{} on {}: {} of {}", entry.path, entry.host, keeping(entry), entry.r#type)?;
         match &entry.last {
             Some(last) => writeln!(
@@ -99,7 +123,7 @@ pub(crate) fn info(
     for field in message.fields() {
         writeln!(console.out, "  {} {}", type_name(&field), field.name())?;
     }
-    Ok(Exit::Success)
+    Ok(())
 }
 
 fn field_object(field: &FieldDescriptor) -> Value {
