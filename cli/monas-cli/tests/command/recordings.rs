@@ -208,3 +208,18 @@ fn a_limit_on_the_size_of_files_is_an_error_and_not_the_end() {
     assert_eq!((answer.code, results(&answer)), (Some(1), (true, true)), "{answer:?}");
     assert!(answer.err.contains("cannot be written: File too large"), "{}", answer.err);
 }
+
+/// Programs such as `timeout` signal a process and its group, so that it is signalled twice.
+#[test]
+fn a_run_that_is_signalled_twice_at_once_ends_in_order() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let tape = text(&folder.path().join("live.mcap"));
+    let run = live(folder.path(), &tape, &[]);
+    // It is answered after the run has begun.
+    assert_eq!(ask(folder.path(), &["agent", "list"]).code, Some(0));
+    let ended = run.interrupt_and_terminate();
+    assert!(matches!(ended.code, Some(130 | 143)), "{ended:?}");
+    assert!(ended.out.contains("score") || ended.out.contains("hash: "), "the results are there: {ended:?}");
+    assert!(!folder.path().join("monas/one.sock").exists(), "its socket is gone with it");
+    assert_eq!(monas(&["tape", "verify", &tape]).code, Some(0));
+}

@@ -66,6 +66,15 @@ impl Running {
         self.wait()
     }
 
+    /// Interrupts the run, and asks it to end at the same time, as a program does that passes its
+    /// signals on.
+    pub(crate) fn interrupt_and_terminate(mut self) -> Answer {
+        let process = self.child.id();
+        let signals = format!("kill -INT {process}; kill -TERM {process}");
+        assert!(Command::new("sh").args(["-c", &signals]).status().expect("there is a shell").success());
+        self.wait()
+    }
+
     /// Waits for its end.
     pub(crate) fn wait(&mut self) -> Answer {
         let (mut out, mut err) = (String::new(), String::new());
