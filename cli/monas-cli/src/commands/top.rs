@@ -21,6 +21,9 @@ use draw::Screen;
 use metrics::Metrics;
 use monas_terminal::{CommandFailure, CommandOutput, Exit, Format, Interrupt, WallClock};
 
+/// The longest wait for a key before the interrupt is checked.
+const CHECK_INTERVAL: Duration = Duration::from_millis(50);
+
 /// Arguments of `monas top`.
 #[derive(Args, Debug)]
 pub(crate) struct TopArguments {
@@ -59,7 +62,7 @@ pub(crate) fn execute(
     let mut look = RunPoller { client: connection::client(run)?, choice: run };
     let is_watched = console.bars.is_some() && io::stdout().is_terminal();
     if is_watched && !once && run.format.value == Format::Text {
-        return watch(*every, &mut look);
+        return watch(*every, &mut look, console);
     }
     let before = look.next_sample()?;
     WallClock::start().wait_until(*every, &Interrupt::default());
@@ -91,13 +94,18 @@ impl RunPoller<'_> {
     }
 }
 
-/// Shows a run on the whole terminal until the user quits.
-fn watch(every: Duration, look: &mut RunPoller<'_>) -> Result<Exit, CommandFailure> {
+/// Shows a run on the whole terminal until the user quits, or until a signal.
+fn watch(
+    every: Duration,
+    look: &mut RunPoller<'_>,
+    console: &CommandOutput<'_>,
+) -> Result<Exit, CommandFailure> {
+    let interrupt = Interrupt::for_console(console)?;
     let mut before = look.next_sample()?;
     let mut screen = Screen::new(Metrics::between(&before, &before));
     let mut terminal = ratatui::try_init()?;
     let watched = loop {
-        match show(&mut terminal, &mut screen, every) {
+        match show(&mut terminal, &mut screen, every, &interrupt) {
             Ok(true) => {}
             Ok(false) => break Ok(Exit::Success),
             Err(error) => break Err(error.into()),
@@ -115,13 +123,24 @@ fn watch(every: Duration, look: &mut RunPoller<'_>) -> Result<Exit, CommandFailu
 }
 
 /// Shows a screen for a time and handles keys meanwhile. Returns false to quit.
-fn show(terminal: &mut DefaultTerminal, screen: &mut Screen, length: Duration) -> io::Result<bool> {
+fn show(
+    terminal: &mut DefaultTerminal,
+    screen: &mut Screen,
+    length: Duration,
+    interrupt: &Interrupt,
+) -> io::Result<bool> {
     let clock = WallClock::start();
     loop {
         terminal.draw(|frame| screen.draw(frame))?;
-        let left = length.saturating_sub(clock.elapsed());
-        if !event::poll(left)? {
-            return Ok(true);
+        let mut left = length.saturating_sub(clock.elapsed());
+        while !event::poll(left.min(CHECK_INTERVAL))? {
+            if interrupt.is_requested() {
+                return Ok(false);
+            }
+            left = length.saturating_sub(clock.elapsed());
+            if left.is_zero() {
+                return Ok(true);
+            }
         }
         if let Event::Key(key) = event::read()?
             && key.kind != KeyEventKind::Release
