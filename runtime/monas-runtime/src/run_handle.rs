@@ -129,7 +129,7 @@ impl RunHandle {
     /// not being advanced.
     pub fn publish(&self, host: &str, path: &str, bytes: &[u8]) -> Result<(), String> {
         let hub = self.hubs.iter().find(|hub| hub.host() == host);
-        let hub = hub.ok_or_else(|| format!("no host is named `{host}`"))?;
+        let hub = hub.ok_or_else(|| unknown_host(host, self.hubs.iter().map(Hub::host)))?;
         match &self.time {
             RunTime::Real(clock, _) => publish(hub, path, bytes, clock.now()),
             RunTime::Simulated(_, requests) => {
@@ -213,10 +213,10 @@ impl RunHandle {
             },
         };
         if let Some(host) = host {
-            let known: Vec<String> = views.iter().map(|view| format!("`{}`", view.host)).collect();
+            let unknown = unknown_host(host, views.iter().map(|view| view.host.as_str()));
             views.retain(|view| view.host == host);
             if views.is_empty() {
-                return Err(format!("no host is named `{host}`; there are {}", known.join(", ")));
+                return Err(unknown);
             }
         }
         Ok(views)
@@ -256,7 +256,8 @@ impl RunHandle {
             (None, _) => {
                 let known = statuses.iter().flat_map(|view| &view.agents).map(|known| known.name.as_str());
                 let near = nearest(agent, known).map(|near| format!("; did you mean `{near}`?"));
-                Err(format!("no agent is named `{agent}`{}", near.unwrap_or_default()))
+                let on_host = host.map(|host| format!(" on `{host}`")).unwrap_or_default();
+                Err(format!("no agent is named `{agent}`{on_host}{}", near.unwrap_or_default()))
             }
             (Some(last), false) => {
                 Err(format!("`{agent}` is on several hosts: name one of {}, {last}", hosts.join(", ")))
@@ -276,6 +277,11 @@ impl RunHandle {
             several => Err(format!("there are several hosts: name one of {}", several.join(", "))),
         }
     }
+}
+
+fn unknown_host<'a>(host: &str, known: impl Iterator<Item = &'a str>) -> String {
+    let known: Vec<String> = known.map(|known| format!("`{known}`")).collect();
+    format!("no host is named `{host}`; there are {}", known.join(", "))
 }
 
 /// The status of a host whose agent does not return.

@@ -124,7 +124,7 @@ fn mistakes_are_answered_with_what_would_be_right() {
     fs::write(&snippet, "<agent frequency=\"10\">\n<name>x</name><activity>LedHandlr</activity></agent>")
         .expect("a file");
     let ask = |arguments: &[&str]| ask(folder.path(), &[&["agent"], arguments].concat());
-    let cases: [(&[&str], i32, &str); 10] = [
+    let cases: [(&[&str], i32, &str); 11] = [
         (&["stop", "Light"], 1, "no agent of `local` is named `Light`\n  help: did you mean `Lights`?"),
         (&["start", "Lights"], 1, "`Lights` has not stopped"),
         (&["set", "Lights", "frequency=1", "frequency=2"], 2, "`frequency` is given twice"),
@@ -135,6 +135,7 @@ fn mistakes_are_answered_with_what_would_be_right() {
             3,
             "extra.xml:2:25: error[E0312]: unknown activity `LedHandlr`\n  help: did you mean `LedHandler`?",
         ),
+        (&["swap", "Mind", "nowhere", "--state", "A"], 2, "`A` is not OLD=NEW"),
         (&["swap", "Mind", "nowhere"], 1, "no generated statechart `nowhere` is registered"),
         (&["swap", "Mind", "models/golie.srm"], 3, "did you mean `models/goalie.srm`?"),
         (&["list", "Mnd"], 1, "no agent is named `Mnd`; did you mean `Mind`?"),

@@ -55,6 +55,8 @@ fn a_chart_is_inspected_and_a_raised_event_is_recorded() {
     let answer = chart(&["show", "Dark"]);
     assert_eq!(answer.code, Some(1));
     assert!(answer.err.contains("no agent is named `Dark`"), "{}", answer.err);
+    let answer = chart(&["show", "Dark", "--host", "local"]);
+    assert!(answer.err.contains("no agent is named `Dark` on `local`"), "{}", answer.err);
     let answer = chart(&["show", "Ligth"]);
     assert!(answer.err.contains("no agent is named `Ligth`; did you mean `Light`?"), "{}", answer.err);
     assert_eq!(run.interrupt().code, Some(130));

@@ -100,6 +100,8 @@ fn a_running_match_is_inspected() {
     assert_eq!(published["topic"], "soccer/calibration", "{published}");
 
     let json = r#"{"number": 7}"#;
+    let nowhere = ask(&["topic", "pub", "soccer/calibration", json, "--host", "blue-9"]);
+    assert!(nowhere.err.contains("no host is named `blue-9`; there are `"), "{nowhere:?}");
     let published = ask(&["topic", "pub", "soccer/calibration", json, "--host", "blue-2"]);
     assert_eq!(published.out, "published on soccer/calibration of blue-2\n", "{}", published.err);
     let echo =

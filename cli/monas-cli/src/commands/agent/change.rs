@@ -43,7 +43,7 @@ fn requested_change(command: &AgentCommand) -> Result<Option<(Change, &RunSelect
         }
         AgentCommand::AddActivity { agent, activity, parameters, at, run } => {
             let (activity, place) = (activity.clone(), at.unwrap_or_default());
-            let settings = settings(parameters)?;
+            let settings = settings(parameters, "KEY=VALUE")?;
             (Change { activity, place, settings, ..change_of(Action::AddActivity, agent) }, run)
         }
         AgentCommand::RemoveActivity { agent, activity, run } => {
@@ -55,15 +55,15 @@ fn requested_change(command: &AgentCommand) -> Result<Option<(Change, &RunSelect
         }
         AgentCommand::ReplaceActivity { agent, activity, replacement, parameters, run } => {
             let (activity, replacement) = (activity.clone(), replacement.clone());
-            let settings = settings(parameters)?;
+            let settings = settings(parameters, "KEY=VALUE")?;
             (Change { activity, replacement, settings, ..change_of(Action::ReplaceActivity, agent) }, run)
         }
         AgentCommand::Set { agent, settings: given, chart, run } => {
             let chart = chart.clone().unwrap_or_default();
-            (Change { settings: settings(given)?, chart, ..change_of(Action::Set, agent) }, run)
+            (Change { settings: settings(given, "KEY=VALUE")?, chart, ..change_of(Action::Set, agent) }, run)
         }
         AgentCommand::Swap { agent, model, chart, states, lossy, dry_run, run } => {
-            let (states, accept_losses, dry_run) = (settings(states)?, *lossy, *dry_run);
+            let (states, accept_losses, dry_run) = (settings(states, "OLD=NEW")?, *lossy, *dry_run);
             let chart = chart.clone().unwrap_or_default();
             // A name without an extension that is not a file may be that of a generated chart.
             let path = Path::new(model);
@@ -90,14 +90,14 @@ fn agent_or_chart(action: Action, AgentOrChart { one, chart }: &AgentOrChart) ->
     (Change { chart: chart.clone().unwrap_or_default(), ..change }, run)
 }
 
-/// Parses `KEY=VALUE` arguments.
-fn settings(given: &[String]) -> Result<Vec<Setting>, CommandFailure> {
+/// Parses arguments of a form such as `KEY=VALUE`.
+fn settings(given: &[String], form: &str) -> Result<Vec<Setting>, CommandFailure> {
     let mut settings: Vec<Setting> = Vec::new();
     for text in given {
         let (key, value) = text
             .split_once('=')
             .filter(|(key, _)| !key.is_empty())
-            .ok_or_else(|| CommandFailure::Usage(format!("`{text}` is not KEY=VALUE")))?;
+            .ok_or_else(|| CommandFailure::Usage(format!("`{text}` is not {form}")))?;
         if settings.iter().any(|setting| setting.key == key) {
             return Err(CommandFailure::Usage(format!("`{key}` is given twice: remove one of them")));
         }
