@@ -1,32 +1,9 @@
-//! Ctrl-C in a terminal, by Python's module `pty`.
+//! Ctrl-C in a terminal.
 
 use std::fmt::Write;
 use std::fs;
-use std::process::Command;
 
-/// Starts a command in a terminal, presses Ctrl-C when its progress offers it, and prints its
-/// status and its output.
-const IN_TERMINAL: &str = r#"
-import os, pty, sys
-pid, terminal = pty.fork()
-if pid == 0:
-    os.execv(sys.argv[1], sys.argv[1:])
-output, pressed = b"", False
-while True:
-    try:
-        part = os.read(terminal, 65536)
-    except OSError:
-        break
-    if not part:
-        break
-    output += part
-    if not pressed and b"Ctrl-C gives what is known" in output:
-        os.write(terminal, b"\x03")
-        pressed = True
-_, status = os.waitpid(pid, 0)
-print(os.waitstatus_to_exitcode(status), pressed)
-print(output.decode())
-"#;
+use crate::kit::in_terminal;
 
 /// A chart whose checks take several seconds.
 fn large() -> String {
@@ -47,9 +24,8 @@ fn ctrl_c_during_checks_gives_what_is_known() {
     let folder = tempfile::tempdir().expect("a folder");
     let model = folder.path().join("large.iac");
     fs::write(&model, large()).expect("a file");
-    let mut python = Command::new("python3");
-    python.args(["-c", IN_TERMINAL, env!("CARGO_BIN_EXE_monas"), "model", "check", "--unlinked"]).arg(&model);
-    let Ok(output) = python.output() else {
+    let mut python = in_terminal("Ctrl-C gives what is known", "press Ctrl-C");
+    let Ok(output) = python.args(["model", "check", "--unlinked"]).arg(&model).output() else {
         println!("SKIPPED: Python is not there, so that no terminal is interrupted");
         return;
     };

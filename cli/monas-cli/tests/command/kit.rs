@@ -50,6 +50,41 @@ pub(crate) fn given(arguments: &[&str], input: &str) -> Answer {
     child.wait_with_output().expect("the command ends").into()
 }
 
+/// Starts a command in a terminal by Python's module `pty`. When its output contains a text, Ctrl-C
+/// is pressed or SIGTERM sent. Prints its status, whether that was done, and its output.
+const IN_TERMINAL: &str = r#"
+import os, pty, signal, sys
+text, action, command = sys.argv[1].encode(), sys.argv[2], sys.argv[3:]
+pid, terminal = pty.fork()
+if pid == 0:
+    os.execv(command[0], command)
+output, done = b"", False
+while True:
+    try:
+        part = os.read(terminal, 65536)
+    except OSError:
+        break
+    if not part:
+        break
+    output += part
+    if not done and text in output:
+        if action == "press Ctrl-C":
+            os.write(terminal, b"\x03")
+        else:
+            os.kill(pid, signal.SIGTERM)
+        done = True
+_, status = os.waitpid(pid, 0)
+print(os.waitstatus_to_exitcode(status), done)
+print(output.decode())
+"#;
+
+/// Python with [`IN_TERMINAL`] and the command, ready for arguments of the command.
+pub(crate) fn in_terminal(text: &str, action: &str) -> Command {
+    let mut python = Command::new("python3");
+    python.args(["-c", IN_TERMINAL, text, action, env!("CARGO_BIN_EXE_monas")]);
+    python
+}
+
 /// A copy of the project's configuration and models with one text replaced, and the line of it.
 pub(crate) fn changed(file: &str, text: &str, replacement: &str) -> (tempfile::TempDir, usize) {
     let folder = tempfile::tempdir().expect("a folder");
