@@ -67,7 +67,7 @@ fn read_up_to(path: &Path, largest: u64) -> Result<Arc<Source>, Box<Diagnostic>>
         },
         Err(error) if error.kind() == io::ErrorKind::NotFound => {
             let diagnostic = unreadable("E0316", &name, format!("no file `{name}`"));
-            Err(match neighbour(path) {
+            Err(match neighbour(path).or_else(|| in_folder_above(path)) {
                 Some(found) => Box::new(diagnostic.with_hint(format!("did you mean `{}`?", found.display()))),
                 None => diagnostic,
             })
@@ -142,6 +142,15 @@ fn neighbour(path: &Path) -> Option<PathBuf> {
     let listed = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
     let names = files_in(listed);
     nearest(name, names.iter().map(String::as_str)).map(|found| folder.join(found))
+}
+
+/// The same path from the nearest folder above the working directory that has such a file: commands
+/// are often typed in a folder of a project that names its files from its root.
+fn in_folder_above(path: &Path) -> Option<PathBuf> {
+    let depth = std::env::current_dir().ok()?.ancestors().count();
+    let above = std::iter::successors(Some(PathBuf::from("..")), |folder| Some(folder.join("..")));
+    let mut found = above.take(depth.saturating_sub(1)).map(|folder| folder.join(path));
+    if path.is_relative() { found.find(|path| path.is_file()) } else { None }
 }
 
 /// The names of the files in a folder, sorted: the order of a directory listing is unspecified.

@@ -25,7 +25,13 @@ pub(crate) enum ConfigurationKind {
 
 /// The kind of a configuration, by the name of its first element.
 pub(crate) fn kind_of(config: &Path) -> Result<ConfigurationKind, Box<Diagnostic>> {
-    let (elements, _) = grammar().parse(&config::read_file(config)?);
+    let file = config::read_file(config).map_err(|unread| match unread.hint {
+        None if config == Path::new(DEFAULT_CONFIGURATION) && !config.exists() => {
+            Box::new(unread.with_hint("name a configuration, or create a project: `monas new my-team`"))
+        }
+        _ => unread,
+    })?;
+    let (elements, _) = grammar().parse(&file);
     match elements.first().filter(|root| root.is("match")) {
         #[cfg(feature = "soccer")]
         Some(_) => Ok(ConfigurationKind::Match),

@@ -107,6 +107,25 @@ fn a_diagnostic_begins_with_its_severity_and_names_its_file() {
     );
 }
 
+#[test]
+fn a_missing_file_is_searched_in_the_folders_above() {
+    let hint = |folder: &Path, arguments: &[&str]| {
+        let output = command(arguments).current_dir(folder).output().expect("monas runs");
+        assert_eq!(output.status.code(), Some(3), "{output:?}");
+        let text = String::from_utf8_lossy(&output.stderr).into_owned();
+        text.split_once("= help: ").map(|(_, hint)| hint.trim_end().to_owned())
+    };
+    let models = root().join("models");
+    let found = hint(&models, &["run", "config/match.xml"]);
+    assert_eq!(found.as_deref(), Some("did you mean `../config/match.xml`?"));
+    let found = hint(&root().join("docs"), &["model", "check", "models/goalie.srm"]);
+    assert_eq!(found.as_deref(), Some("did you mean `../models/goalie.srm`?"));
+    let empty = tempfile::tempdir().expect("a folder");
+    let found = hint(empty.path(), &["run"]);
+    assert_eq!(found.as_deref(), Some("name a configuration, or create a project: `monas new my-team`"));
+    assert_eq!(hint(empty.path(), &["run", "nowhere.xml"]), None);
+}
+
 /// The exit code of a command whose output is not read.
 fn unread(arguments: &[&str]) -> Option<i32> {
     let mut child =
