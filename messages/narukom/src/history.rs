@@ -88,8 +88,8 @@ impl<'a> History<'a> {
         if distance(other) < distance(one) { after } else { before }
     }
 
-    /// The last message published at or before `moment` among the delivered ones before index
-    /// `place` and the own ones.
+    /// The last message published at or before `moment` among the delivered ones before
+    /// `index` and the own ones.
     #[inline]
     fn last_before(&self, index: usize, moment: Timestamp) -> Option<&'a AnySample> {
         let delivered = if index > self.first { self.samples.get(index - 1) } else { None };
@@ -100,7 +100,7 @@ impl<'a> History<'a> {
         [delivered, own].into_iter().flatten().max_by_key(|sample| sample.header.local)
     }
 
-    /// The first message published at or after `moment` among the delivered ones from index `place`
+    /// The first message published at or after `moment` among the delivered ones from index `index`
     /// on and the own ones.
     #[inline]
     fn first_from(&self, index: usize, moment: Timestamp) -> Option<&'a AnySample> {

@@ -242,12 +242,12 @@ fn delay(text: &str) -> Option<Duration> {
     }
 }
 
-/// A decimal number in units of 10^`places` nanoseconds; exact, or `None`.
-fn decimal(number: &str, index: usize) -> Option<Duration> {
+/// A decimal number in units of 10^`decimal_places` nanoseconds; exact, or `None`.
+fn decimal(number: &str, decimal_places: usize) -> Option<Duration> {
     let (whole, fraction) = number.split_once('.').unwrap_or((number, ""));
     let only_digits = |text: &str| text.bytes().all(|byte| byte.is_ascii_digit());
-    if whole.is_empty() || fraction.len() > index || !only_digits(whole) || !only_digits(fraction) {
+    if whole.is_empty() || fraction.len() > decimal_places || !only_digits(whole) || !only_digits(fraction) {
         return None;
     }
-    format!("{whole}{fraction:0<index$}").parse().ok().map(Duration::from_nanos)
+    format!("{whole}{fraction:0<decimal_places$}").parse().ok().map(Duration::from_nanos)
 }
