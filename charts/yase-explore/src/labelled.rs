@@ -427,13 +427,13 @@ impl LabelledSearch<'_, '_, '_> {
             }
         };
         let ends = PendingEvent::ended_by(&step.cause);
-        if let Entry::Vacant(index) = self.known.entry((to, letter, elapsed, ends)) {
+        if let Entry::Vacant(entry) = self.known.entry((to, letter, elapsed, ends)) {
             let texts = &mut self.found.texts;
             let step = *self.texts.entry(step).or_insert_with_key(|step| {
                 texts.push(step.clone());
                 texts.len() - 1
             });
-            index.insert(self.found.steps.len());
+            entry.insert(self.found.steps.len());
             self.found.steps.push(LabelledStep { from, to, letter, elapsed, ends, step });
         }
     }

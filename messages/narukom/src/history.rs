@@ -100,7 +100,7 @@ impl<'a> History<'a> {
         [delivered, own].into_iter().flatten().max_by_key(|sample| sample.header.local)
     }
 
-    /// The first message published at or after `moment` among the delivered ones from index `index`
+    /// The first message published at or after `moment` among the delivered ones from `index`
     /// on and the own ones.
     #[inline]
     fn first_from(&self, index: usize, moment: Timestamp) -> Option<&'a AnySample> {

@@ -66,9 +66,7 @@ impl ControlReceiver {
         let before = self.robots.keys().filter(|(.., is_loopback)| *is_loopback).count();
         match self.robots.entry((team, player, referee.0.is_loopback())) {
             Entry::Occupied(socket) => Ok(socket.into_mut()),
-            Entry::Vacant(position) => {
-                Ok(position.insert(received::socket((referee.source(before), 0).into())?))
-            }
+            Entry::Vacant(entry) => Ok(entry.insert(received::socket((referee.source(before), 0).into())?)),
         }
     }
 }

@@ -254,8 +254,8 @@ impl ColourSample {
         let mut away: Vec<f32> =
             pixels.iter().filter_map(angle).map(|other| turn(other - centre).abs()).collect();
         away.sort_by(f32::total_cmp);
-        let max = away.get(away.len() * 95 / 100).copied().unwrap_or_default();
-        let width = (1.2 * max).clamp(ObjectHue::WIDTHS[0], ObjectHue::WIDTHS[1]);
+        let p95 = away.get(away.len() * 95 / 100).copied().unwrap_or_default();
+        let width = (1.2 * p95).clamp(ObjectHue::WIDTHS[0], ObjectHue::WIDTHS[1]);
         Ok((ObjectHue::of(chroma, model.white, width), pixels))
     }
 }

@@ -4,7 +4,7 @@ use super::rectangle::Rectangle;
 use yase::statechart::Point;
 
 /// Maximum size of a grid that is searched; in a larger one, arrows are straight lines.
-const MAX_PLACES: usize = 400_000;
+const MAX_POINTS: usize = 400_000;
 /// Lines closer than this are merged.
 const MERGE_DISTANCE: f64 = 5.0;
 /// Cost of a grid point through which another line runs in the same direction.
@@ -86,11 +86,11 @@ impl Grid {
     pub(crate) fn new(lines: GridLines, page: Rectangle) -> Grid {
         let GridLines { columns, rows } = lines;
         let (columns, rows) = (sorted(columns, page.left, page.right), sorted(rows, page.top, page.bottom));
-        let index = columns.len().saturating_mul(rows.len());
-        let (columns, rows, position) =
-            if index > MAX_PLACES { (vec![], vec![], 0) } else { (columns, rows, index) };
-        let (blocked, letters) = (vec![false; position], vec![false; position]);
-        Grid { columns, rows, blocked, across: vec![0; position], down: vec![0; position], letters }
+        let count = columns.len().saturating_mul(rows.len());
+        let (columns, rows, count) =
+            if count > MAX_POINTS { (vec![], vec![], 0) } else { (columns, rows, count) };
+        let (blocked, letters) = (vec![false; count], vec![false; count]);
+        Grid { columns, rows, blocked, across: vec![0; count], down: vec![0; count], letters }
     }
 
     /// The number of grid points.

@@ -1,20 +1,26 @@
 //! `monas top` on a run.
 
 use std::fs;
+use std::path::Path;
 
 use serde_json::Value;
 
 use crate::kit::in_terminal;
 use crate::running::{Running, ask, objects};
 
-#[test]
-fn top_reports_agents_and_their_rates() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let file = folder.path().join("agents.xml");
+/// A run with one agent, whose files are in a folder.
+fn lights(folder: &Path) -> Running {
+    let file = folder.join("agents.xml");
     fs::write(&file, "<agent frequency=\"50\"><name>Lights</name><activity>LedHandler</activity></agent>")
         .expect("a file");
     let file = file.display().to_string();
-    let run = Running::start(folder.path(), &["run", &file, "--control", "lab"], "control socket: ");
+    Running::start(folder, &["run", &file, "--control", "lab"], "control socket: ")
+}
+
+#[test]
+fn top_reports_agents_and_their_rates() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let run = lights(folder.path());
     let look = || {
         let answer = ask(folder.path(), &["top", "--every", "300ms", "--format", "json"]);
         assert_eq!((answer.code, answer.err.as_str()), (Some(0), ""));
@@ -70,11 +76,7 @@ fn a_match_at_the_pace_of_real_time_is_measured_and_stays_the_same_match() {
 #[test]
 fn a_signal_ends_top_and_restores_the_terminal() {
     let folder = tempfile::tempdir().expect("a folder");
-    let file = folder.path().join("agents.xml");
-    fs::write(&file, "<agent frequency=\"50\"><name>Lights</name><activity>LedHandler</activity></agent>")
-        .expect("a file");
-    let file = file.display().to_string();
-    let run = Running::start(folder.path(), &["run", &file, "--control", "lab"], "control socket: ");
+    let run = lights(folder.path());
     assert_eq!(ask(folder.path(), &["agent", "list"]).code, Some(0));
     let mut python = in_terminal("\u{1b}[?1049h", "send SIGTERM");
     python.args(["top", "--every", "1h"]).env("XDG_RUNTIME_DIR", folder.path()).env("TERM", "xterm");

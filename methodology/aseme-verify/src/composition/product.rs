@@ -208,9 +208,9 @@ impl<'a> CompositionSearch<'a> {
         match self.numbers.entry(global) {
             Entry::Occupied(known) => Some(*known.get()),
             Entry::Vacant(_) if count >= self.settings.states => None,
-            Entry::Vacant(index) => {
-                self.found.states.push(index.key().clone());
-                index.insert(count);
+            Entry::Vacant(entry) => {
+                self.found.states.push(entry.key().clone());
+                entry.insert(count);
                 self.found.predecessor.push(came);
                 self.open.push_back(count);
                 Some(count)

@@ -250,10 +250,10 @@ fn are_posts_of_one_goal(one: &LandmarkSighting, other: &LandmarkSighting) -> bo
     }
 }
 
-fn is_near(filter: &PoseFilter, pose: &Isometry2<f64>, (position, turn): (f64, f64)) -> bool {
+fn is_near(filter: &PoseFilter, pose: &Isometry2<f64>, (distance, turn): (f64, f64)) -> bool {
     let known = filter.field_from_robot();
     let off = (Point2::from(known.translation.vector) - Point2::from(pose.translation.vector)).norm();
-    off < position && wrap(heading(known) - heading(pose)).abs() < turn
+    off < distance && wrap(heading(known) - heading(pose)).abs() < turn
 }
 
 #[cfg(test)]

@@ -97,11 +97,11 @@ const PROCESS_NOISE: (f64, f64) = (0.01, 0.005);
 
 impl PoseFilter {
     pub(super) fn new(start: &PoseEstimate) -> PoseFilter {
-        let position = start.place_deviation * start.place_deviation;
-        let turn = start.turn_deviation * start.turn_deviation;
+        let variance = start.place_deviation * start.place_deviation;
+        let turn_variance = start.turn_deviation * start.turn_deviation;
         PoseFilter {
             field_from_robot: start.field_from_robot,
-            covariance: Matrix3::from_diagonal(&Vector3::new(position, position, turn)),
+            covariance: Matrix3::from_diagonal(&Vector3::new(variance, variance, turn_variance)),
             misfits: 0,
         }
     }
@@ -131,10 +131,10 @@ impl PoseFilter {
             0.0, 0.0, 1.0,
         );
         let (distance, turned) = (step.norm(), heading(old_from_new).abs());
-        let position = model.drift * model.drift * distance;
-        let turn = model.turn_drift * model.turn_drift * (turned + distance);
+        let variance = model.drift * model.drift * distance;
+        let turn_variance = model.turn_drift * model.turn_drift * (turned + distance);
         self.covariance = jacobian * self.covariance * jacobian.transpose();
-        self.covariance += Matrix3::from_diagonal(&Vector3::new(position, position, turn));
+        self.covariance += Matrix3::from_diagonal(&Vector3::new(variance, variance, turn_variance));
         self.field_from_robot *= old_from_new;
     }
 

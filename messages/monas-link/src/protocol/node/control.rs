@@ -56,7 +56,7 @@ impl Handshake {
         }
     }
 
-    /// Continues the introduction with the offer at index `index`, or ends it.
+    /// Continues the introduction with the offer at `index`, or ends it.
     fn set_next_offer(&mut self, index: usize) {
         self.next = (index < self.offers).then_some(index);
     }
